@@ -21,6 +21,7 @@ module connections
    use sum_lists, only: sum_list_type
    use temperature_laws, only: face_temperatures_type, law_at, law_jumps
    use transforms, only: partner_type
+   use wear_laws, only: wear_law_type
    implicit none
    private
    public :: connections_type, tie_points_type, match_surfaces, match_tie, join_points, &
@@ -72,6 +73,13 @@ module connections
       !> (m) whether the interface is removed, or no master is opposite: its contact points are open
       !> whatever their gaps, and have no conductance
       logical, allocatable :: removed(:)
+      ! The next four are unallocated where no faces wear.
+      type(wear_law_type), allocatable :: wear(:)         !! (m)
+      real(dp), allocatable :: wear_share(:)              !! (m) the slave's part of the depth
+      !> (m) part of the depth that is a change of the gap: what a master loses along which a slave
+      !> slides by any distance stays where it was
+      real(dp), allocatable :: worn_part(:)
+      real(dp), allocatable :: wear_count                 !! how often slip counts
       !> (n) heat of friction of points%heated, and the friction that makes it where they slide out
       !> of the plane: in the plane these have none
       type(friction_heat_type), allocatable :: heat(:)
@@ -281,6 +289,7 @@ contains
             allocate (laws%overlap(m))
          end if
       end associate
+      call take_wear(model, points, step, laws)
       do i = 1, size(model%contacts)
          associate (first => points%interface_start(i), last => points%interface_start(i + 1) - 1, &
             interaction => model%interactions(model%contacts(i)%interaction))
@@ -304,6 +313,31 @@ contains
          laws%nodal_friction%largest_shear = laws%friction%largest_shear*points%weight
       call take_friction_heat(model, points, laws)
    end function laws_of_step
+
+   !> The laws of wear, also those of removed interfaces, which do not slip.
+   pure subroutine take_wear(model, points, step, laws)
+      type(model_type), intent(in) :: model
+      type(connections_type), intent(in) :: points
+      integer, intent(in) :: step
+      type(contact_laws_type), intent(inout) :: laws
+      integer :: i
+
+      if (.not. any(model%interactions(model%contacts%interaction)%wear%wears())) return
+      associate (m => size(points%weight))
+         allocate (laws%wear(m), laws%wear_share(m), laws%worn_part(m))
+      end associate
+      laws%wear_count = 1.0_dp
+      if (size(model%steps) > 0) laws%wear_count = model%steps(step)%wear_count
+      do i = 1, size(model%contacts)
+         associate (first => points%interface_start(i), last => points%interface_start(i + 1) - 1, &
+            law => model%interactions(model%contacts(i)%interaction)%wear)
+            laws%wear(first:last) = law
+            laws%wear_share(first:last) = law%slave_share
+            laws%worn_part(first:last) = merge(law%slave_share, 1.0_dp, &
+               model%contacts(i)%follows_sliding)
+         end associate
+      end do
+   end subroutine take_wear
 
    !> The heat of friction. Faces that slide out of the plane have no friction in it.
    pure subroutine take_friction_heat(model, points, laws)

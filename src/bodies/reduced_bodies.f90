@@ -63,6 +63,7 @@ module reduced_bodies
       logical :: is_coupled = .false.   !! whether heat depends on the mechanics of the step
       !> (2 nodes) where contact points lie on displaced faces; unallocated where none does [length]
       real(dp), allocatable :: faces_at(:)
+      real(dp), allocatable :: worn(:)   !! (m) wear that is part of the gaps, or none [length]
       !> All of them as they were matched last, where some follow sliding
       type(contact_points_type), allocatable, private :: matched(:), matched_ties(:)
       ! Key of the numbering: supports, contact points with friction, prescribed temperatures.
@@ -76,6 +77,7 @@ module reduced_bodies
       procedure :: enter_step
       procedure :: follow_faces
       procedure :: faces_moved
+      procedure :: wear_to
       procedure :: number
       procedure :: assemble_steps
       procedure :: assemble
@@ -118,6 +120,7 @@ contains
       call join_points(self%interfaces, self%ties, model, self%points)
       deallocate (self%ties)
       self%laws = laws_of_step(model, self%points, 1)
+      if (allocated(self%laws%wear)) allocate (self%worn(size(self%points%slave)), source=0.0_dp)
       if (has_sparse_tail(model, real(size(self%points%slave), dp)) .or. &
          allocated(self%faces_at)) then
          self%mechanical%division%graph = joined_nodes(model)
@@ -253,10 +256,21 @@ contains
       self%interfaces = self%matched
       call join_points(self%interfaces, self%matched_ties, model, self%points)
       self%laws = laws_of_step(model, self%points, step)
+      if (allocated(self%worn)) self%points%initial_gap = self%points%initial_gap + &
+         self%laws%worn_part*self%worn
       if (allocated(self%prescribed)) self%has_friction = self%laws%friction%coefficient > 0.0_dp
       call self%number(model, self%prescribed, self%held_temperature, allocated(self%prescribed), &
          allocated(self%held_temperature))
    end subroutine follow_faces
+
+   !> Makes wear part of the gaps, in the place of what was.
+   pure subroutine wear_to(self, depth)
+      class(reduced_bodies_type), intent(inout) :: self !! in a step with laws of wear
+      real(dp), intent(in) :: depth(:)                       !! (m) of both faces [length]
+
+      self%points%initial_gap = self%points%initial_gap + self%laws%worn_part*(depth - self%worn)
+      self%worn = depth
+   end subroutine wear_to
 
    !> Whether contact points that follow sliding have moved against their masters from where they
    !> were placed, by more than a part of their spacing that does not count.

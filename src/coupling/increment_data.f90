@@ -59,6 +59,8 @@ module increment_data
       !> (m) mean temperature of the faces without jumps, where conductance laws vary with it
       real(dp), allocatable :: welded_mean(:)
       type(contact_scales_type) :: scales            !! set where heat and mechanics are coupled
+      !> (m) depth that faces lose for each pressure, where they wear [length/stress]
+      real(dp), allocatable :: wear_by_pressure(:)
       logical :: is_corrected = .false.              !! whether its operators are, by its solution
       logical :: follows_branch = .false.            !! whether it is a point of a branch
       type(load_rate_type) :: rate                   !! set for passes on a branch

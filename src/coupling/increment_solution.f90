@@ -11,6 +11,7 @@ module increment_solution
    use contact_workspace, only: contact_workspace_type
    use coupled_increment, only: solve_coupled
    use edge_heat, only: edge_heat_type, joined_conductance
+   use face_wear, only: worn_overlaps
    use errors, only: check_finite, error_type, set_error, status_no_convergence
    use fixed_point, only: pass_type
    use friction_heating, only: begin_friction, nodal_friction_heat
@@ -20,6 +21,7 @@ module increment_solution
    use increment_data, only: increment_data_type, increment_workspace_type, trial_type
    use kinds, only: dp
    use loads, only: loads_type
+   use overlap_laws, only: overlap_law_type
    use reduced_bodies, only: reduced_bodies_type
    use solution_report, only: iteration_record_type, solution_report_type
    use solution_state, only: solution_state_type
@@ -378,6 +380,7 @@ contains
       type(error_type), allocatable, intent(out) :: error
       real(dp) :: thermal(2*size(trial%next%temperature))
       real(dp), dimension(bodies%rigid%count) :: along, sums   ! resultants, and without signs
+      type(overlap_law_type), allocatable :: overlap(:)
       type(sum_list_type) :: sizes
 
       trial%next%contact%reference = trial%data%previous%tangential
@@ -390,9 +393,15 @@ contains
          call bodies%equilibrium%condense_load(bodies%mechanical, force, &
             trial%known(of_mechanics))
          ! A solution with other corrections has the factors of the one before.
-         if (.not. allocated(work%initial_gap)) work = contact_workspace_type(contact, &
-            loads%present_gaps(bodies%points), bodies%laws%nodal_friction, bodies%laws%removed, &
-            bodies%laws%overlap, bodies%points%weight)
+         if (.not. allocated(work%initial_gap)) then
+            if (allocated(trial%data%wear_by_pressure)) then
+               overlap = worn_overlaps(bodies, trial%data%wear_by_pressure)
+            else if (allocated(bodies%laws%overlap)) then
+               overlap = bodies%laws%overlap
+            end if
+            work = contact_workspace_type(contact, loads%present_gaps(bodies%points), &
+               bodies%laws%nodal_friction, bodies%laws%removed, overlap, bodies%points%weight)
+         end if
          work%load_scale = max(maxval(abs(applied)), maxval(abs(thermal)))
          along = 0.0_dp
          call bodies%rigid%add_totals(applied, along)

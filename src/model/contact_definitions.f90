@@ -6,6 +6,7 @@ module contact_definitions
    use kinds, only: dp
    use named_items, only: named_type
    use overlap_laws, only: overlap_law_type
+   use wear_laws, only: wear_law_type
    implicit none
    private
    public :: interaction_type, contact_definition_type, tie_definition_type
@@ -23,6 +24,7 @@ module contact_definitions
       type(friction_heat_type) :: heat        !! heat of this friction
       type(conductance_law_type) :: law       !! conductance law
       type(overlap_law_type) :: overlap       !! of hard faces, or of soft ones
+      type(wear_law_type) :: wear             !! of faces that do not wear, or of those that do
    end type interaction_type
 
    !> One *CONTACT PAIR: two surfaces that may meet; or the faces of one *TIE.

@@ -77,6 +77,7 @@ module steps
       type(start_type) :: start                              !! where its fixed point starts
       type(thermal_scheme_type) :: scheme = implicit_scheme  !! scheme of eq. (3.4) of this step
       integer :: restart_frequency = 0       !! states at every n-th increment and the last; 0 none
+      real(dp) :: wear_count = 1.0_dp        !! how often its slip counts as wear
       logical :: overlays_restarts = .false. !! whether only the last one of each step is kept
    end type step_controls_type
 

@@ -3,7 +3,7 @@
 module listing_increments
    use, intrinsic :: ieee_arithmetic, only: ieee_is_nan, ieee_quiet_nan, ieee_value
    use contact_points, only: contact_points_type
-   use contact_quantities, only: contact_values, estimated
+   use contact_quantities, only: contact_values, estimated, has_quantity
    use field_quantities, only: maxima
    use increment_quantities, only: history_estimated, history_value, part_values, stability_words
    use interface_quantities, only: is_end_of_face
@@ -84,7 +84,7 @@ contains
       do i = 1, size(quantities)
          if (quantities(i)%kind /= of_interface .or. quantities(i)%label == '') cycle
          quantity = quantities(i)
-         if (quantity%needs == needs_heat .and. .not. allocated(contact%heat_flux)) cycle
+         if (.not. has_quantity(contact, quantity%needs)) cycle
          value = contact_values(quantity%name, contact)
          if (quantity%resolution > 0.0_dp) then
             edges = edges//told(quantity, value(1))
@@ -120,7 +120,7 @@ contains
          quantity = estimated(q)
          i = largest_at(quantity%name, contacts)
          if (i == 0) cycle
-         if (quantity%needs == needs_heat .and. .not. allocated(contacts(i)%heat_flux)) cycle
+         if (.not. has_quantity(contacts(i), quantity%needs)) cycle
          value = contact_values(quantity%name, contacts(i))
          line = line//'   '//words_of(quantity%name)//' '//to_text(value(1))//' ('// &
             interfaces(i)%name//')'

@@ -3,7 +3,7 @@
 module listing_tables
    use, intrinsic :: ieee_arithmetic, only: ieee_is_nan
    use contact_points, only: contact_points_type
-   use contact_quantities, only: contact_values, geometry_values
+   use contact_quantities, only: contact_values, geometry_values, has_quantity
    use due_output, only: table_is_due
    use increment_quantities, only: pass_value
    use equations, only: equation_nodes, section_nodes
@@ -13,7 +13,7 @@ module listing_tables
    use print_requests, only: print_ceeq, print_creep, print_displacement, print_force, &
       print_heat, print_heat_flux, print_peeq, print_plastic, print_position, &
       print_request_type, print_stress, print_temperature
-   use quantity_types, only: needs_heat, of_contact_points, of_passes, quantity_type
+   use quantity_types, only: of_contact_points, of_passes, quantity_type
    use records, only: contact_record_type, element_points_record_type, field_record_type, &
       increment_record_type
    use reported_quantities, only: quantities
@@ -56,8 +56,7 @@ contains
       integer :: i
 
       columns = pack(quantities, quantities%kind == of_contact_points .and. &
-         quantities%width > 0 .and. (quantities%needs /= needs_heat .or. &
-         allocated(contact%conductance)))
+         quantities%width > 0 .and. has_quantity(contact, quantities%needs))
       allocate (values(size(points%slave), size(columns)), rows(0:size(points%slave)))
       do i = 1, size(columns)
          if (columns(i)%is_geometry) then

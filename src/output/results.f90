@@ -24,7 +24,7 @@ module results
    use model, only: model_type, uncertainty_full
    use no_estimates, only: no_reason, reason_count, reason_inside_step, reason_of_run, &
       words_of_reason
-   use quantity_types, only: needs_coupling, needs_dilatation, needs_friction_heat, &
+   use quantity_types, only: needs_coupling, needs_dilatation, needs_friction_heat, needs_wear, &
       needs_branch, needs_heat, needs_mechanics, needs_nothing, needs_sections, needs_stability, &
       needs_storage, needs_temperature, of_bodies, of_contact_points, of_history, of_interface, &
       of_passes, of_sections, quantity_type, last_need, needs_creep, needs_plasticity, needs_laws
@@ -365,6 +365,8 @@ contains
          has(needs_laws) = has(needs_plasticity) .or. has(needs_creep)
          has(needs_friction_heat) = has(needs_heat) .and. makes_friction_heat( &
             model%interactions, model%contacts)
+         has(needs_wear) = has(needs_mechanics) .and. &
+            any(model%interactions(model%contacts%interaction)%wear%wears())
          has(needs_coupling) = has_contact .and. any(solves_heat(analysis) .and. &
             solves_mechanics(analysis))
       end associate

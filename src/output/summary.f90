@@ -3,7 +3,8 @@
 module summary
    use, intrinsic :: ieee_arithmetic, only: ieee_is_nan
    use contact_points, only: contact_points_type
-   use contact_quantities, only: contact_values, end_words, estimated, zone_words
+   use contact_quantities, only: contact_values, end_words, estimated, has_quantity, &
+      zone_words
    use contact_system, only: contact_open, contact_stick
    use interface_quantities, only: is_end_of_face, rises_to_end
    use increment_quantities, only: stability_words
@@ -13,7 +14,7 @@ module summary
    use model, only: model_type
    use model_words, only: has_many
    use no_estimates, only: at_corner, mark_of, no_reason, reason_inside_step, reason_of_run
-   use quantity_types, only: needs_heat, quantity_type
+   use quantity_types, only: quantity_type
    use records, only: body_uncertainty_type, contact_record_type, increment_record_type, &
       uncertainty_type
    use text, only: append, few_digits, or_blank, percent, string_type, to_text
@@ -479,7 +480,7 @@ contains
       integer, intent(in) :: i                       ! number of the interface
       type(contact_record_type), intent(in) :: contact
 
-      is_had = quantity%needs /= needs_heat .or. allocated(contact%heat_flux)
+      is_had = has_quantity(contact, quantity%needs)
       if (quantity%is_of_friction) is_had = abs(contact%shear_force) > 0.0_dp
       if (quantity%name == 'edge_stick') is_had = abs(contact%shear_force) > 0.0_dp .or. &
          model%interactions(model%contacts(i)%interaction)%friction%coefficient > 0.0_dp

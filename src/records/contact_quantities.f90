@@ -4,12 +4,13 @@ module contact_quantities
    use contact_points, only: contact_points_type
    use contact_system, only: contact_open, contact_stick
    use kinds, only: dp
-   use quantity_types, only: needs_heat, of_interface, of_contact_points, quantity_type
+   use quantity_types, only: needs_heat, needs_wear, of_interface, of_contact_points, quantity_type
    use records, only: contact_record_type
    use zone_edges, only: edges_kept
    implicit none
    private
-   public :: contact_table, estimated, contact_values, end_words, geometry_values, zone_words
+   public :: contact_table, estimated, contact_values, end_words, geometry_values, has_quantity, &
+      zone_words
 
    ! Contact points are in the order of the columns of *CONTACT PRINT.
    type(quantity_type), parameter :: contact_table(*) = [ &
@@ -22,6 +23,12 @@ module contact_quantities
       quantity_type('heat_rate', of_interface, 'power', needs_heat, label='heat rate', &
       head='heat', is_estimated=.true., is_traded=.true., &
       description='heat that crosses from slave to master'), &
+      quantity_type('worn_volume_slave', of_interface, 'length^3', needs_wear, &
+      label='worn volume, slave', &
+      description='volume that the slave has lost'), &
+      quantity_type('worn_volume_master', of_interface, 'length^3', needs_wear, &
+      label='worn volume, master', &
+      description='volume that the master has lost'), &
       quantity_type('peak_pressure', of_interface, 'stress', head='peak', is_estimated=.true., &
       is_traded=.true., is_published=.false., follows_path=.true., &
       description='largest contact pressure'), &
@@ -62,6 +69,10 @@ module contact_quantities
       is_on_faces=.true., description='shear traction on the slave towards growing s'), &
       quantity_type('slip', of_contact_points, 'length', head='slip', width=11, &
       description='displacement of the slave along s against the master since closing'), &
+      quantity_type('wear_slave', of_contact_points, 'length', needs_wear, head='wear1', &
+      width=11, is_on_faces=.true., description='depth that the slave has lost'), &
+      quantity_type('wear_master', of_contact_points, 'length', needs_wear, head='wear2', &
+      width=11, is_on_faces=.true., description='depth that the master has lost'), &
       quantity_type('slave_temperature', of_contact_points, 'temperature', needs_heat, head='T1', &
       width=11, description='temperature of the slave'), &
       quantity_type('master_temperature', of_contact_points, 'temperature', needs_heat, head='T2', &
@@ -75,6 +86,16 @@ module contact_quantities
    type(quantity_type), parameter :: estimated(*) = pack(contact_table, contact_table%is_estimated)
 
 contains
+
+   !> Whether an interface has a quantity of its table: heat is solved, its faces wear.
+   elemental logical function has_quantity(contact, needs) result(has)
+      type(contact_record_type), intent(in) :: contact   !! state of the interface
+      integer, intent(in) :: needs                       !! of the quantity
+
+      has = .true.
+      if (needs == needs_heat) has = allocated(contact%heat_flux)
+      if (needs == needs_wear) has = allocated(contact%wear_slave)
+   end function has_quantity
 
    !> A quantity of an interface, or of its contact points: those of the mesh excepted.
    pure function contact_values(name, contact) result(values)
@@ -111,6 +132,14 @@ contains
          values = or_nan(contact%shear)
       case ('slip')
          values = or_nan(contact%slip)
+      case ('worn_volume_slave')
+         values = [contact%worn_volume(1)]
+      case ('worn_volume_master')
+         values = [contact%worn_volume(2)]
+      case ('wear_slave')
+         values = or_nan(contact%wear_slave)
+      case ('wear_master')
+         values = or_nan(contact%wear_master)
       case ('slave_temperature')
          values = or_nan(contact%slave_temperature)
       case ('master_temperature')

@@ -45,6 +45,9 @@ module records
       !> along the tangent, of the slave against the master since the start [length]
       real(dp), allocatable :: movement(:)
       real(dp), allocatable :: smallest_gap(:)         !! smallest gamma so far [length]
+      !> Depth that each face has lost; unallocated where faces do not wear [length]
+      real(dp), allocatable :: wear_slave(:), wear_master(:)
+      real(dp) :: worn_volume(2) = 0.0_dp              !! of slave and master [length^3]
       type(slide_type) :: slide                        !! beyond what its contact points allow
       ! The next four are unallocated without heat.
       real(dp), allocatable :: conductance(:)          !! omega [power/(length^2 temperature)]

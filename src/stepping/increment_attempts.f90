@@ -7,6 +7,7 @@ module increment_attempts
    use contact_system, only: contact_open
    use controls, only: method_newton
    use coupled_increment, only: differ, judge_solution
+   use face_wear, only: wear_by_pressure, wear_faces
    use energies, only: add_friction_work
    use errors, only: error_type, set_error, status_internal, status_no_convergence
    use friction_heating, only: nodal_friction_heat
@@ -35,6 +36,7 @@ module increment_attempts
    real(dp), parameter :: of_collapse = 1.0_dp
 
    integer, parameter :: most_placings = 10   !! of contact points that slide, in an increment
+   real(dp), parameter :: same_wear = 1.0e-9_dp      !! relative change of wear that is none
    real(dp), parameter :: over_spacing = 1.0e-5_dp   !! slip over a spacing that is rounding
 
    !> The trial solution of an attempt, or of the stage that it has come to, and what it found.
@@ -44,6 +46,8 @@ module increment_attempts
       type(solution_state_type) :: before
       type(increment_record_type) :: record
       character(:), allocatable :: undecided       !! what was last warned of
+      !> (m) as in the data of the trial that comes next, once a solution slips
+      real(dp), allocatable :: wear_by_pressure(:)
    end type attempt_type
 
 contains
@@ -196,24 +200,52 @@ contains
       type(attempt_type), intent(inout) :: attempt
       type(error_type), allocatable, intent(out) :: error
       integer :: placing
+      logical :: has_moved, is_worn
 
       do placing = 1, most_placings
          call solve_corrected(run, model, attempt, error)
-         if (allocated(error) .or. .not. allocated(run%bodies%faces_at)) return
-         if (.not. run%bodies%faces_moved(attempt%next%displacement)) then
+         if (allocated(error) .or. .not. solves_mechanics(model%steps(run%control%step)%analysis)) &
+            return
+         has_moved = run%bodies%faces_moved(attempt%next%displacement)
+         is_worn = .true.
+         if (allocated(run%bodies%worn)) call follow_wear(run, attempt, is_worn)
+         if (is_worn .and. .not. has_moved) then
+            if (allocated(run%bodies%worn)) then
+               call wear_faces(run%bodies, attempt%before, attempt%wear_by_pressure, attempt%next)
+               call run%bodies%wear_to(attempt%next%wear)
+            end if
+            if (.not. allocated(run%bodies%faces_at)) return
             attempt%next%faces_at = run%bodies%faces_at
             call check_slip(run, model, attempt, error)
             return
          end if
+         attempt%next%contact%slip_origin = attempt%before%contact%slip_origin
+         if (.not. has_moved) cycle
          call run%place_faces(model, attempt%next%displacement, error)
          if (.not. allocated(error)) call check_arrivals(run%bodies, model, attempt, error)
          if (allocated(error)) return
          call carry_to_faces(run%bodies, attempt%before)
          attempt%next%contact%slip_origin = attempt%before%contact%slip_origin
       end do
-      call set_error(error, status_no_convergence, 'contact points of faces that slide find no '// &
-         'place in '//to_text(most_placings)//' turns')
+      call set_error(error, status_no_convergence, trim(merge( &
+         'contact points of faces that slide find no place in ', &
+         'wear and the slip that makes it do not settle in    ', has_moved))//' '// &
+         to_text(most_placings)//' turns')
    end subroutine solve_on_faces
+
+   !> Takes the slip of a solution for its wear, unless it is that with which it was solved.
+   subroutine follow_wear(run, attempt, is_same)
+      type(simulation_type), intent(in) :: run
+      type(attempt_type), intent(inout) :: attempt
+      logical, intent(out) :: is_same
+      real(dp) :: by_pressure(size(attempt%next%omega))
+
+      by_pressure = wear_by_pressure(run%bodies, attempt%before, attempt%next, attempt%stage%size)
+      is_same = allocated(attempt%wear_by_pressure)
+      if (is_same) is_same = all(abs(by_pressure - attempt%wear_by_pressure) <= &
+         same_wear*maxval(by_pressure))
+      if (.not. is_same) attempt%wear_by_pressure = by_pressure
+   end subroutine follow_wear
 
    !> Whether no contact point slips by more than the spacing of nodes: its master is that of the
    !> end of the increment, and its friction acts along one direction.
@@ -356,6 +388,7 @@ contains
       associate (step => model%steps(run%control%step), bodies => run%bodies, data => attempt%data)
          call begin_increment(bodies, step, attempt%before, attempt%trial_type)
          data%is_corrected = run%corrections%corrects
+         if (allocated(attempt%wear_by_pressure)) data%wear_by_pressure = attempt%wear_by_pressure
          ! The last of the corrected solutions is judged alone.
          data%fixed_point%finds_gain = data%fixed_point%finds_gain .and. .not. &
             run%corrections%corrects

@@ -206,6 +206,14 @@ contains
          record%movement = contact%tangential(first:last)
          record%slip = record%movement - contact%slip_origin(first:last)
       end associate
+      if (allocated(next%wear)) then
+         associate (share => bodies%laws%wear_share(first:last))
+            record%wear_slave = share*next%wear(first:last)
+            record%wear_master = (1.0_dp - share)*next%wear(first:last)
+         end associate
+         record%worn_volume = [sum(points%weight*record%wear_slave), &
+            sum(points%weight*record%wear_master)]
+      end if
       if (.not. points%follows_sliding) record%slide = worst_slide(points, closed, record%movement)
       if (allocated(bodies%thermal%matrix%value)) then
          allocate (record%slave_temperature(size(closed)), record%master_temperature( &

@@ -70,6 +70,7 @@ contains
             state%sources%film = loads%film_matrix()
          end if
          state%force_load = loads%nodal_forces()
+         if (allocated(state%wear)) call simulation%bodies%wear_to(state%wear)
          if (allocated(state%faces_at)) call simulation%place_faces(model, state%faces_at, error)
          if (allocated(error) .or. .not. allocated(state%operators_at)) return
          call simulation%bodies%move_operators(model, state%operators_at, state%tangent)

@@ -181,6 +181,7 @@ contains
       real(dp), allocatable :: at(:)                      ! (nodes) [temperature]
 
       call self%loads%move_to(self%control%instant_at(model, self%control%step_time), model)
+      if (allocated(self%state%wear)) call self%bodies%wear_to(self%state%wear)
       if (allocated(self%state%faces_at)) then
          call self%place_faces(model, self%state%faces_at, error)
          if (allocated(error)) return
@@ -279,6 +280,7 @@ contains
          if (allocated(model%mesh%initial_stress)) state%forces_beyond = assemble_initial_force( &
             model%mesh, model%sections)
          if (allocated(bodies%faces_at)) state%faces_at = bodies%faces_at
+         if (allocated(bodies%worn)) state%wear = bodies%worn
          numbers = history_count(model%mesh, model%sections, model%materials)
          if (numbers > 0) allocate (state%history(numbers), source=0.0_dp)
       end associate

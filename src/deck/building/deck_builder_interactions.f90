@@ -18,6 +18,7 @@ module deck_builder_interactions
    use overlap_laws, only: overlap_law_type
    use temperature_laws, only: face_temperatures_type, largest_jump, law_at, radiation_ends
    use text, only: to_text, to_upper
+   use wear_laws, only: wear_law_type
    implicit none
    private
    public :: build_interactions, build_friction
@@ -59,7 +60,7 @@ contains
                if (deck%error_count() > errors .or. card%flawed) cycle
                call check_law(card, law_place, deck%model%interactions(n), deck)
             case ('FRICTION', 'GAP LAW', 'GAP CONDUCTANCE', 'GAP HEAT GENERATION', &
-               'GAP RADIATION', 'SURFACE BEHAVIOR')
+               'GAP RADIATION', 'SURFACE BEHAVIOR', 'WEAR')
                if (n == 0 .and. len(card%meant) == 0) then
                   call deck%missing(card%place, '*'//card%name//' has no *SURFACE INTERACTION '// &
                      'before it')
@@ -77,8 +78,8 @@ contains
       type(deck_type), intent(inout) :: deck
       type(interaction_type), intent(inout) :: interaction
       type(place_type), intent(inout) :: law_place   ! becomes that of the data of the last law
-      character(*), parameter :: once(4) = [character(19) :: 'FRICTION', 'SURFACE BEHAVIOR', &
-         'GAP HEAT GENERATION', 'GAP RADIATION']
+      character(*), parameter :: once(5) = [character(19) :: 'FRICTION', 'SURFACE BEHAVIOR', &
+         'GAP HEAT GENERATION', 'GAP RADIATION', 'WEAR']
       character(*), parameter :: ends(2) = ['SURFACE INTERACTION', 'STEP               ']
       integer :: i, k, table, taken(0:size(once))
       logical :: says_pressure
@@ -94,7 +95,7 @@ contains
          associate (card => deck%cards%keywords(k))
             if (any(card%name == ends)) exit
             if (size(card%data) == 0 .and. all(card%name /= [character(19) :: 'FRICTION', &
-               'GAP HEAT GENERATION', 'SURFACE BEHAVIOR'])) cycle
+               'GAP HEAT GENERATION', 'SURFACE BEHAVIOR', 'WEAR'])) cycle
             if (any(card%name == ['GAP LAW        ', 'GAP CONDUCTANCE', 'GAP RADIATION  '])) then
                law_place = card%data(1)%place(1)
             end if
@@ -108,6 +109,8 @@ contains
                call build_friction(card, deck, interaction%friction)
             case ('SURFACE BEHAVIOR')
                call build_behavior(card, deck, interaction%overlap)
+            case ('WEAR')
+               call build_wear(card, deck, interaction%wear)
             case ('GAP HEAT GENERATION')
                call build_friction_heat(card, deck, interaction%heat)
             case ('GAP LAW')
@@ -134,6 +137,36 @@ contains
       if (taken(4) > 0) call build_gap_radiation(deck%cards%keywords(taken(4)), deck, &
          interaction%law)
    end subroutine build_laws
+
+   !> Reads one *WEAR: K, share of the slave, temperature.
+   subroutine build_wear(card, deck, wear)
+      type(keyword_card_type), intent(in) :: card
+      type(deck_type), intent(inout) :: deck
+      type(wear_law_type), intent(out) :: wear
+      real(dp) :: values(3, size(card%data))
+      integer :: k
+      logical :: valid
+
+      if (card%has('CYCLES')) call deck%error(card%place_of('CYCLES'), 'CYCLES= belongs to *WEAR '// &
+         'in a step; leave it out here')
+      if (size(card%data) == 0) then
+         call deck%missing(card%place, '*WEAR needs a data card: K, share of the slave, '// &
+            'temperature', 'data')
+         return
+      end if
+      call read_rows(card%data, 'K (depth per pressure and slip) >=0/share of the slave? >=0 <=1 '// &
+         '=1/temperature? =0', deck, values, valid)
+      if (.not. valid) return
+      call check_ascending(card%data, 3, 'temperatures', values(3, :), deck)
+      do k = 2, size(card%data)
+         if (abs(values(2, k) - values(2, 1)) > 0.0_dp) call deck%error(card%data(k)%place(2), &
+            'the share of the slave is one number for all temperatures; repeat that of the '// &
+            'first row')
+      end do
+      wear%rate = values(1, :)
+      wear%temperature = values(3, :)
+      wear%slave_share = values(2, 1)
+   end subroutine build_wear
 
    !> Reads one *FRICTION: coefficient of friction, or ROUGH; TAUMAX= bounds the shear.
    subroutine build_friction(card, deck, friction)

@@ -82,6 +82,8 @@ contains
             case ('THERMAL SCHEME')
                has_scheme = .true.
                call build_thermal_scheme(card, deck, controls%scheme)
+            case ('WEAR')
+               if (n > 0) call build_wear_count(card, deck, controls%wear_count)
             case ('CYCLE')
                call build_cycle(card, n, deck)
             case ('CONTINUATION')
@@ -112,6 +114,24 @@ contains
       end do
       call warn_of_nlgeom(deck, deck%model%steps)
    end subroutine build_steps
+
+   !> Reads *WEAR of a step: how many cycles the slip of this step and of later ones stands for.
+   subroutine build_wear_count(card, deck, cycles)
+      type(keyword_card_type), intent(in) :: card
+      type(deck_type), intent(inout) :: deck
+      real(dp), intent(inout) :: cycles
+
+      if (size(card%data) > 0) call deck%error(card%data(1)%place(1), '*WEAR in a step has no data '// &
+         'cards: laws of wear belong to a *SURFACE INTERACTION')
+      if (card%has('CYCLES')) then
+         call take_parameter(card, 'CYCLES', deck, cycles, '>0')
+      else
+         call deck%error(card%place, '*WEAR in a step needs CYCLES=, for how many cycles its slip '// &
+            'stands')
+      end if
+      if (.not. any(deck%model%interactions%wear%wears())) call deck%missing(card%place, &
+         'no surface interaction has a law of wear', '*WEAR')
+   end subroutine build_wear_count
 
    !> Reads *CYCLE, whose steps stand behind it as often as it says: those that end a cycle have it.
    subroutine build_cycle(card, n, deck)

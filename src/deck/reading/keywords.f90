@@ -70,7 +70,7 @@ module keywords
    !> How the keywords end that ask for output.
    character(*), parameter :: output_words(3) = [character(6) :: 'OUTPUT', 'FILE', 'PRINT']
 
-   type(keyword_type), parameter :: known_keywords(94) = [ &
+   type(keyword_type), parameter :: known_keywords(95) = [ &
       keyword_type('HEADING', in_model, 0, many, ''), &
       keyword_type('OPTIONS', in_model, 0, 0, 'WIDTH=/UNITS=/LOAD=/PLANE=/ORDER=/ERRORS='), &
       keyword_type('PHYSICAL CONSTANTS', in_model, 0, 0, &
@@ -113,6 +113,7 @@ module keywords
       keyword_type('GAP LAW', in_model, 1, many, 'TYPE=/JUMP=/ROUGHNESS=/EMISSIVITY='), &
       keyword_type('GAP HEAT GENERATION', in_model, 0, 1, 'ANGULAR VELOCITY='), &
       keyword_type('GAP RADIATION', in_model, 1, many, ''), &
+      keyword_type('WEAR', in_both, 0, many, 'CYCLES='), &
       keyword_type('SURFACE BEHAVIOR', in_model, 0, many, &
          'PRESSURE-OVERCLOSURE=/~AUGMENTED LAGRANGE/~PENALTY?/~DIRECT'), &
       keyword_type('CONTACT PAIR', in_model, 1, many, &

@@ -1,0 +1,86 @@
+!> Wear of the faces in an increment. With the slip of its end it is a compliance of the contact
+!> points, as of soft faces: a pressure p takes the gap c p farther. So the pressure belongs to the
+!> worn faces, and however fast they wear, increments are stable.
+module face_wear
+   use contact_system, only: contact_open
+   use kinds, only: dp
+   use overlap_laws, only: overlap_law_type
+   use reduced_bodies, only: reduced_bodies_type
+   use solution_state, only: solution_state_type
+   implicit none
+   private
+   public :: wear_by_pressure, wear_faces, worn_overlaps
+
+contains
+
+   !> Depth that the faces lose for each pressure, by the slip since the start.
+   pure function wear_by_pressure(bodies, before, next, duration) result(depth)
+      type(reduced_bodies_type), intent(in) :: bodies       !! of a step with laws of wear
+      type(solution_state_type), intent(in) :: before, next !! at the start, at the end
+      real(dp), intent(in) :: duration                      !! of sliding out of the plane [time]
+      real(dp) :: depth(size(next%omega))                   !! (m) [length/stress]
+      real(dp), dimension(size(depth)) :: of_master, slip, temperature
+      integer :: i
+
+      associate (contact => next%contact, start => before%contact)
+         slip = contact%tangential - contact%slip_origin
+         where (start%contact_state /= contact_open) slip = slip - (start%tangential - &
+            start%slip_origin)
+         if (allocated(bodies%laws%heat)) then
+            associate (heated => bodies%points%heated, speed => max(bodies%laws%heat%speed, 0.0_dp))
+               slip(heated) = hypot(slip(heated), speed*duration)
+            end associate
+         end if
+         temperature = 0.0_dp
+         of_master = 0.0_dp
+         do i = 1, size(bodies%interfaces)
+            associate (first => bodies%points%interface_start(i), &
+               last => bodies%points%interface_start(i + 1) - 1)
+               call bodies%interfaces(i)%slave_mean%add_totals(next%temperature, &
+                  temperature(first:last))
+               call bodies%interfaces(i)%master_mean%add_totals(next%temperature, &
+                  of_master(first:last))
+            end associate
+         end do
+         depth = bodies%laws%wear%rate_at(0.5_dp*(temperature + of_master))*abs(slip)* &
+            bodies%laws%wear_count
+         where (contact%contact_state == contact_open) depth = 0.0_dp
+      end associate
+   end function wear_by_pressure
+
+   !> Laws of overlap of contact points that wear, beside those of soft faces.
+   pure function worn_overlaps(bodies, by_pressure) result(overlap)
+      type(reduced_bodies_type), intent(in) :: bodies
+      real(dp), intent(in) :: by_pressure(:)                !! (m) as above
+      type(overlap_law_type), allocatable :: overlap(:)     !! (m)
+      integer :: k
+
+      allocate (overlap(size(by_pressure)))
+      if (allocated(bodies%laws%overlap)) overlap = bodies%laws%overlap
+      do k = 1, size(overlap)
+         associate (opens => bodies%laws%worn_part(k)*by_pressure(k))
+            if (opens <= 0.0_dp .or. bodies%points%weight(k) <= 0.0_dp) cycle
+            overlap(k)%overlap = [0.0_dp, opens]
+            overlap(k)%pressure = [0.0_dp, 1.0_dp]
+         end associate
+      end do
+   end function worn_overlaps
+
+   !> Wears the faces at the end of an increment, which then touch without overlap.
+   pure subroutine wear_faces(bodies, before, by_pressure, next)
+      type(reduced_bodies_type), intent(in) :: bodies
+      type(solution_state_type), intent(in) :: before       !! at the start
+      real(dp), intent(in) :: by_pressure(:)                !! (m) with which it was solved
+      type(solution_state_type), intent(inout) :: next      !! at the end
+
+      next%wear = before%wear
+      associate (weight => bodies%points%weight, contact => next%contact)
+         where (weight > 0.0_dp .and. contact%contact_state /= contact_open)
+            next%wear = next%wear + by_pressure*contact%force/weight
+         end where
+         where (bodies%laws%worn_part*by_pressure > 0.0_dp .and. contact%contact_state /= &
+            contact_open) contact%gap = 0.0_dp
+      end associate
+   end subroutine wear_faces
+
+end module face_wear
