@@ -242,6 +242,9 @@ contains
 
       by_pressure = wear_by_pressure(run%bodies, attempt%before, attempt%next, attempt%stage%size)
       is_same = allocated(attempt%wear_by_pressure)
+      ! An open contact point does not wear; that of the solution before it waits.
+      if (is_same) by_pressure = merge(attempt%wear_by_pressure, by_pressure, &
+         attempt%next%contact%contact_state == contact_open)
       if (is_same) is_same = all(abs(by_pressure - attempt%wear_by_pressure) <= &
          same_wear*maxval(by_pressure))
       if (.not. is_same) attempt%wear_by_pressure = by_pressure

@@ -1,0 +1,162 @@
+"""Wear of faces: Archard's law under a constant force, at a fixed interference, over temperatures;
+beside sliding by any distance, friction, restart and uncertainties."""
+
+import re
+from itertools import pairwise
+from math import exp
+
+import h5py
+import numpy as np
+import pytest
+from blocks import write
+from deck_runs import run, solve
+from physics import follows, material, mesh, verify
+from test_restart import assert_same, go_on
+
+YOUNG, LENGTH, PRESSURE = 1e5, 10.0, 100.0
+K, SPEED = 1e-6, 100.0
+
+
+def bar(increment=0.1, law=(f"{K}, 1.",), force=None, sliding="", friction=None, speed=SPEED,
+        steps=1, count=None, temperature=None, width=1.0):
+    """Return the cards of a bar on a wall that slides below it in the second step, its end held at
+    an interference or pressed by a force; without a Poisson's ratio, so its pressure is uniform."""
+    cards = [*mesh("BAR", [0.0, width / 2, width], [0.0, LENGTH / 2, LENGTH], "CPS4"),
+             *mesh("WALL", [-20.0, 150.0], [-1.0, 0.0], "CPS4", first=101),
+             *material("BAR", (YOUNG, 0.0)), *material("WALL", (YOUNG, 0.0)),
+             "*SURFACE INTERACTION, NAME=I"]
+    if friction:
+        cards += ["*FRICTION", f"{friction!r}"]
+    cards += ["*WEAR", *law, f"*CONTACT PAIR, INTERACTION=I, NAME=C{sliding}",
+              "BAR.BOTTOM, WALL.TOP"]
+    if temperature is not None:
+        cards += ["*INITIAL CONDITIONS, TYPE=TEMPERATURE", f"BAR, {temperature}",
+                  f"WALL, {temperature}"]
+    cards += ["*BOUNDARY", "WALL, 1, 2", "BAR.TOP, 1"]
+    if not friction:
+        cards += ["BAR.BOTTOM, 1"]
+    cards += ["*STEP", "*STATIC", "1., 1."]
+    if force is None:
+        cards += ["*BOUNDARY", f"BAR.TOP, 2, 2, {-PRESSURE * LENGTH / YOUNG!r}"]
+    else:
+        cards += ["*DSLOAD", f"BAR.TOP, P, {force!r}"]
+    cards += ["*END STEP"]
+    for k in range(steps):
+        cards += ["*STEP, INC=100000", "*STATIC, DIRECT", f"{increment!r}, 1."]
+        cards += [f"*WEAR, CYCLES={count!r}"] if count else []
+        cards += ["*BOUNDARY", f"WALL, 1, 1, {(-1.0) ** (k + 1) * speed * ((k + 1) % 2)!r}",
+                  "*END STEP"]
+    return cards
+
+
+def state(folder, cards, *arguments):
+    """Solve a deck; return the quantities of its interface over time by their names."""
+    result = solve(write(folder / "deck.inp", cards), *arguments)
+    with h5py.File(result) as file:
+        return {name: item[()] for name, item in file["contact/C"].items()}
+
+
+def test_a_block_under_a_constant_force_wears_by_k_p_v_t(tmp_path):
+    found = state(tmp_path, bar(force=PRESSURE))
+    assert found["wear_slave"][-1] == pytest.approx(K * PRESSURE * SPEED, rel=1e-9)
+    assert found["worn_volume_slave"][-1] == pytest.approx(K * PRESSURE * SPEED, rel=1e-9)
+
+
+def test_a_bar_at_a_fixed_interference_loses_its_pressure_with_the_first_order(tmp_path):
+    exact = PRESSURE * exp(-K * YOUNG * SPEED / LENGTH)
+    errors = []
+    for n in (10, 20, 40):
+        found = state(tmp_path, bar(1.0 / n))
+        # Euler's implicit rule, whose factor of an increment is known too.
+        rule = PRESSURE * (1.0 + K * YOUNG * SPEED / LENGTH / n) ** -n
+        assert found["pressure"][-1] == pytest.approx(rule, rel=1e-8)
+        errors.append(abs(found["pressure"][-1][0] - exact))
+    assert [a / b for a, b in pairwise(errors)] == pytest.approx([2.0, 2.0], rel=0.05)
+
+
+@pytest.mark.parametrize("law", [f"{1e3 * K}, 1.", "1., 1."])
+def test_increments_are_stable_however_fast_faces_wear(tmp_path, law):
+    pressure = state(tmp_path, bar(0.25, law=(law,)))["pressure"].min(axis=1)
+    assert np.all(np.diff(pressure[1:]) < 0.0) or pressure[-1] < 1e-9 * PRESSURE
+    assert np.all(pressure >= 0.0)
+
+
+def test_frictionless_faces_wear_as_others(tmp_path):
+    with_friction = state(tmp_path, bar(0.05, friction=0.01, force=PRESSURE, width=40.0))
+    without = state(tmp_path, bar(0.05, force=PRESSURE, width=40.0))
+    assert with_friction["shear_force"][-1] == pytest.approx(-0.01 * 40.0 * PRESSURE)
+    # The bar itself gives way by a hundredth of a millimetre before it slips.
+    assert with_friction["worn_volume_slave"][-1] == pytest.approx(
+        without["worn_volume_slave"][-1], rel=1e-3)
+
+
+def test_the_volume_is_k_times_the_work_of_friction_over_mu(tmp_path):
+    found = state(tmp_path, bar(0.05, friction=0.2, width=40.0))
+    weight, slip = found["weight"], np.abs(np.diff(found["slip"], axis=0))
+    work = 0.2 * (weight * found["pressure"][1:] * slip).sum()
+    assert found["shear_force"][-1] != 0.0
+    assert found["worn_volume_slave"][-1] == pytest.approx(K * work / 0.2, rel=1e-8)
+
+
+@pytest.mark.changes("WEAR")
+def test_the_law_is_that_of_the_card(tmp_path):
+    def make(rate):
+        depth = rate * PRESSURE * SPEED
+        return bar(force=PRESSURE, law=(f"{rate!r}, 1.",)), [("wear_slave", "MAX", "LAST", depth,
+                                                              1e-8)]
+
+    follows(tmp_path, make, K, 2 * K)
+
+
+@pytest.mark.changes("WEAR, CYCLES")
+def test_the_slip_of_a_step_stands_for_many_cycles(tmp_path):
+    def make(count):
+        return bar(force=PRESSURE, count=count), [
+            ("wear_slave", "MAX", "LAST", count * K * PRESSURE * SPEED, 1e-8)]
+
+    follows(tmp_path, make, 10.0, 1000.0)
+
+
+def test_the_master_loses_the_rest_of_the_depth(tmp_path):
+    found = state(tmp_path, bar(force=PRESSURE, law=(f"{K}, 0.25",)))
+    depth = K * PRESSURE * SPEED
+    assert found["wear_slave"][-1] == pytest.approx(0.25 * depth, rel=1e-8)
+    assert found["wear_master"][-1] == pytest.approx(0.75 * depth, rel=1e-8)
+    assert found["worn_volume_master"][-1] == pytest.approx(0.75 * depth, rel=1e-8)
+
+
+def test_the_rate_is_that_of_the_faces_temperature(tmp_path):
+    law = (f"{K}, 1., 0.", f"{3 * K}, 1., 100.")
+    found = state(tmp_path, bar(force=PRESSURE, law=law, temperature=50.0))
+    assert found["wear_slave"][-1] == pytest.approx(2 * K * PRESSURE * SPEED, rel=1e-8)
+
+
+def test_wear_goes_with_a_slave_that_slides_by_any_distance(tmp_path):
+    """What the slave loses opens its gap wherever it is; what the master loses stays behind."""
+    small = state(tmp_path, bar(0.01, speed=SPEED))
+    finite = state(tmp_path, bar(0.01, sliding=", SLIDING=FINITE"))
+    assert finite["pressure"][-1] == pytest.approx(small["pressure"][-1], rel=1e-6)
+    hard = state(tmp_path, bar(0.01, sliding=", SLIDING=FINITE", law=(f"{K}, 0.",)))
+    assert hard["pressure"][-1] == pytest.approx(PRESSURE, rel=1e-6)
+    assert hard["worn_volume_master"][-1] == pytest.approx(K * PRESSURE * SPEED, rel=1e-6)
+
+
+def test_a_motion_to_and_fro_wears_both_ways(tmp_path):
+    found = state(tmp_path, bar(0.1, force=PRESSURE, steps=2))
+    assert found["wear_slave"][-1] == pytest.approx(2 * K * PRESSURE * SPEED, rel=1e-8)
+
+
+def test_a_run_goes_on_from_a_worn_state_to_the_last_bit(tmp_path):
+    cards = bar(0.1, friction=0.1, sliding=", SLIDING=FINITE")
+    whole = solve(write(tmp_path / "deck.inp", ["*RESTART, WRITE", *cards]))
+    part = go_on(tmp_path / "deck.inp", whole, tmp_path / "part", 1.5)
+    assert_same(whole, part)
+
+
+def test_its_uncertainty_holds_the_exact_volume(tmp_path):
+    exact = (PRESSURE - PRESSURE * exp(-K * YOUNG * SPEED / LENGTH)) * LENGTH / YOUNG
+    deck = write(tmp_path / "deck.inp", ["*OPTIONS, ERRORS=FULL", *bar(0.05)],
+                 verify(("worn_volume_slave", "C", "LAST", 2 * exact, 1e-3)))
+    told = run("run", "--quiet", deck, "--out", tmp_path).stderr
+    value, half = map(float, re.search(r": (\S+) \+- ([^\s,]+)", told).groups())
+    assert abs(value - exact) < half < 5 * abs(value - exact)
