@@ -36,14 +36,15 @@ contains
       reason = findloc(holds, .true., dim=1)
    end function first_reason
 
-   !> Why nothing in a run has an uncertainty. Where heat is stored, materials remember, properties
-   !> follow temperatures or bolts are tightened, errors of the mesh build up along the path.
+   !> Why nothing in a run has an uncertainty. Where heat is stored, materials remember, faces
+   !> wear, properties follow temperatures or bolts are tightened, errors of the mesh build up along
+   !> the path.
    pure integer function reason_of_run(model) result(reason)
       type(model_type), intent(in) :: model
       logical :: follows_path, holds(reason_count)
 
       follows_path = any(model%steps%is_transient) .or. follows_temperatures(model) .or. &
-         any(has_law(model%materials))
+         any(has_law(model%materials)) .or. any(model%interactions%wear%wears())
       if (allocated(model%couplings)) follows_path = follows_path .or. &
          any(model%couplings%is_section())
       holds = .false.

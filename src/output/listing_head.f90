@@ -4,11 +4,12 @@ module listing_head
    use contact_points, only: contact_points_type
    use deck_outcomes, only: counts_of_checks, end_of_run
    use interface_warnings, only: gap_range
+   use kinds, only: dp
    use listing_text, only: page_type, page_width
    use model, only: model_type
    use model_words, only: alike_words, closed_law_words, first_alike, friction_heat_words, &
       friction_words, from_to, has_many, &
-      open_law_words, open_words, overlap_words, pairing_words, points_words
+      open_law_words, open_words, overlap_words, pairing_words, points_words, wear_words
    use run_summaries, only: in_listing, run_entries, run_entry_type, run_summary_type
    use steps, only: solves_heat
    use summary, only: summary_type
@@ -148,6 +149,10 @@ contains
          call print_entry(page, 'coefficient of friction', friction_words(interaction%friction))
          if (interaction%overlap%is_soft()) call print_entry(page, 'pressure', &
             overlap_words(interaction%overlap))
+         if (interaction%wear%wears()) call print_entry(page, 'wear', wear_words(interaction%wear))
+         if (interaction%wear%wears() .and. model%contacts(i)%follows_sliding .and. &
+            interaction%wear%slave_share < 1.0_dp) call print_entry(page, 'note', 'what the '// &
+            'master loses opens no gap: the slave leaves it behind')
          if (.not. any(solves_heat(model%steps%analysis))) return
          if (makes_friction_heat(model%interactions, model%contacts(i:i))) call print_entry( &
             page, 'heat of friction', friction_heat_words(interaction%heat))

@@ -12,10 +12,11 @@ module model_words
    use overlap_laws, only: overlap_law_type
    use steps, only: analysis_heat, analysis_static
    use text, only: append, counted, string_type, to_text
+   use wear_laws, only: wear_law_type
    implicit none
    private
    public :: expansion_words, law_words, material_words
-   public :: friction_words, friction_heat_words, overlap_words
+   public :: friction_words, friction_heat_words, overlap_words, wear_words
    public :: open_law_words, closed_law_words
    public :: open_words, pairing_words, points_words, section_words, step_words, from_to
    public :: has_many, first_alike, alike_words
@@ -287,6 +288,19 @@ contains
             to_text(law%clearance)//', exponential'
       end if
    end function overlap_words
+
+   !> The wear of faces.
+   pure function wear_words(law) result(words)
+      type(wear_law_type), intent(in) :: law
+      character(:), allocatable :: words   !! such as 1E-8 per pressure and slip, 1 on the slave
+
+      if (size(law%rate) == 1) then
+         words = to_text(law%rate(1))
+      else
+         words = table_words(law%rate, law%temperature)//' over the temperature'
+      end if
+      words = words//' per pressure and slip, '//to_text(law%slave_share)//' on the slave'
+   end function wear_words
 
    !> The heat of friction.
    pure function friction_heat_words(heat) result(words)

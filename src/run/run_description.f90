@@ -15,7 +15,7 @@ module run_description
    use model, only: model_type
    use model_words, only: alike_words, closed_law_words, first_alike, friction_heat_words, &
       friction_words, from_to, &
-      open_law_words, open_words, overlap_words, pairing_words, points_words
+      open_law_words, open_words, overlap_words, pairing_words, points_words, wear_words
    use run_summaries, only: in_check, run_entries, run_entry_type, run_summary_type
    use simulation, only: simulation_type
    use steps, only: analysis_coupled, solves_heat, solves_mechanics
@@ -202,6 +202,7 @@ contains
                friction_heat_words(interaction%heat)
             if (interaction%overlap%is_soft()) words = words//'; pressure '// &
                overlap_words(interaction%overlap)
+            if (interaction%wear%wears()) words = words//'; wear '//wear_words(interaction%wear)
             call line('interaction '//interaction%name, words//'; conductance, open: '// &
                open_law_words(interaction%law)//'; closed: '//closed_law_words(interaction%law))
          end associate

@@ -134,6 +134,9 @@ contains
       end do
       if (table > 0) call build_gap_conductance(deck%cards%keywords(table), interaction%name, &
          .false., deck, interaction%law)
+      if (interaction%overlap%is_soft() .and. interaction%wear%wears()) call deck%error( &
+         deck%cards%keywords(taken(5))%place, '*WEAR is refused beside a *SURFACE BEHAVIOR whose '// &
+         'faces overlap: worn faces are hard ones; leave one of them out')
       if (taken(4) > 0) call build_gap_radiation(deck%cards%keywords(taken(4)), deck, &
          interaction%law)
    end subroutine build_laws

@@ -62,6 +62,8 @@ contains
       if (words /= '') return
       do i = 1, size(model%contacts)
          associate (interaction => model%interactions(model%contacts(i)%interaction))
+            if (interaction%wear%wears()) words = '*CONTINUATION is refused with *WEAR: what '// &
+               model%contacts(i)%name//' has lost depends on the slip before'
             if (interaction%heat%efficiency <= 0.0_dp .or. interaction%heat%leaves_plane()) cycle
             words = '*CONTINUATION has no time, by which slip in '//model%contacts(i)%name// &
                ' would make heat; give *GAP HEAT GENERATION a velocity, or leave it out'
