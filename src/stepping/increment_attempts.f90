@@ -48,6 +48,8 @@ module increment_attempts
       character(:), allocatable :: undecided       !! what was last warned of
       !> (m) as in the data of the trial that comes next, once a solution slips
       real(dp), allocatable :: wear_by_pressure(:)
+      !> (m) conductance of a solution whose contact points lay elsewhere, or wore otherwise
+      real(dp), allocatable :: omega_start(:)
    end type attempt_type
 
 contains
@@ -202,6 +204,7 @@ contains
       integer :: placing
       logical :: has_moved, is_worn
 
+      if (allocated(attempt%omega_start)) deallocate (attempt%omega_start)
       do placing = 1, most_placings
          call solve_corrected(run, model, attempt, error)
          if (allocated(error) .or. .not. solves_mechanics(model%steps(run%control%step)%analysis)) &
@@ -220,6 +223,7 @@ contains
             return
          end if
          attempt%next%contact%slip_origin = attempt%before%contact%slip_origin
+         attempt%omega_start = attempt%next%omega
          if (.not. has_moved) cycle
          call run%place_faces(model, attempt%next%displacement, error)
          if (.not. allocated(error)) call check_arrivals(run%bodies, model, attempt, error)
@@ -391,6 +395,7 @@ contains
       associate (step => model%steps(run%control%step), bodies => run%bodies, data => attempt%data)
          call begin_increment(bodies, step, attempt%before, attempt%trial_type)
          data%is_corrected = run%corrections%corrects
+         if (allocated(attempt%omega_start)) data%omega_start = attempt%omega_start
          if (allocated(attempt%wear_by_pressure)) data%wear_by_pressure = attempt%wear_by_pressure
          ! The last of the corrected solutions is judged alone.
          data%fixed_point%finds_gain = data%fixed_point%finds_gain .and. .not. &
