@@ -175,7 +175,9 @@ contains
          end if
          if (allocated(node_rank) .and. .not. allocated(self%rank)) then
             self%rank = node_rank(problem%map%leading_nodes())
+            self%rank(size(self%rank) - problem%map%last + 1:) = maxval(node_rank) + 1
          end if
+         self%solver%joined = problem%map%last
          call self%solver%analyse(lower, problem%map%tail, self%rank, error)
       end if
       if (.not. allocated(error)) call self%solver%factor(lower, error)

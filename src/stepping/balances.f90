@@ -228,6 +228,9 @@ contains
       dropped = size(next%contact%force)*bodies%equilibrium%contact%least_force()
       residual = force_residual(internal, next%force_load, bodies%points, next%contact)
       call bodies%mechanical%map%carry_over(residual)
+      ! What bodies have along z balances nothing in the plane.
+      internal(bodies%points%along_z) = merge(0.0_dp, residual(bodies%points%along_z), &
+         loads%displacement%active(bodies%points%along_z))
       associate (prescribed => loads%displacement%active)
          scales%force = max(maxval(abs(residual), mask=prescribed), maxval(abs(next%force_load)), &
             sum(next%contact%force), noise*stiffness*scales%length, &

@@ -21,7 +21,8 @@ module operator_corrections
    use heat_equation, only: heat_equation_type
    use increment_data, only: stage_type
    use kinds, only: dp
-   use materials, only: has_law, varies
+   use materials, only: has_law, section_type, varies
+   use mesh, only: mesh_type, nodes_per_element
    use model, only: model_type
    use material_laws, only: law_points_type
    use material_points, only: elastic_part, material_points_type, point_history_type
@@ -105,8 +106,16 @@ contains
             if (varies(model%materials(model%sections(mesh%element_section(e))% &
                material))) follows(mesh%element_body(e)) = .true.
          end do
+         do e = 1, size(model%sections)
+            call follow_others(mesh, model%sections, follows)
+         end do
          self%elements = pack([(e, e=1, size(mesh%element_body))], follows(mesh%element_body))
          self%follows = follows(mesh%node_body)
+         do e = 1, size(self%elements)
+            associate (own => model%sections(mesh%element_section(self%elements(e)))%reference)
+               if (own(1) > 0) self%follows(own) = .true.
+            end associate
+         end do
       end associate
       if (allocated(initial_force)) self%initial_force = initial_force
       self%corrects = any(follows) .or. any(model%steps%dilates)
@@ -122,6 +131,23 @@ contains
       if (any(model%steps%is_transient)) call self%contents%prepare(model%mesh, model%sections, &
          model%materials, model%orientations, load_rules())
    end subroutine prepare
+
+   !> Bodies that have a strain along z in common follow together.
+   pure subroutine follow_others(mesh, sections, follows)
+      type(mesh_type), intent(in) :: mesh
+      type(section_type), intent(in) :: sections(:)
+      logical, intent(inout) :: follows(0:)            ! bodies, none of them first
+      logical :: along_z(size(mesh%element_body))      ! elements that have it
+      integer :: i
+
+      do i = 1, size(sections)
+         if (sections(i)%reference(1) == 0) cycle
+         along_z = sections(mesh%element_section)%reference(1) == sections(i)%reference(1)
+         if (any(follows(pack(mesh%element_body, along_z)))) then
+            follows(pack(mesh%element_body, along_z)) = .true.
+         end if
+      end do
+   end subroutine follow_others
 
    !> Starts a stage, from the corrections of the last increments where these are of the present
    !> operators.
@@ -419,7 +445,7 @@ contains
       real(dp) :: forces(size(displacement))                 ! (2 nodes) [force]
       real(dp), dimension(2, size(temperature)) :: balance, u
       type(law_points_type) :: points
-      real(dp) :: of_nodes(2, 8), warming(size(temperature))
+      real(dp) :: of_nodes(2, nodes_per_element + 2), warming(size(temperature))
       integer :: i
 
       forces = 0.0_dp
@@ -443,6 +469,10 @@ contains
             of_nodes = self%points%nodal_forces(mesh, e, points%stress)
             self%largest_force = max(self%largest_force, maxval(abs(of_nodes(:, :size(nodes)))))
             balance(:, nodes) = balance(:, nodes) - of_nodes(:, :size(nodes))
+            associate (along_z => model%sections(mesh%element_section(e))%reference)
+               if (along_z(1) > 0) balance(:, along_z) = balance(:, along_z) - &
+                  of_nodes(:, nodes_per_element + 1:)
+            end associate
          end associate
       end do
       forces = merge([balance], forces, [spread(self%follows, 1, 2)])
