@@ -133,9 +133,11 @@ contains
 
       call integration_rule(kind, points, weights)
       do g = 1, size(weights)
-         call strain_matrix(kind, plane, coordinates, thickness, points(:, g), b(:, g, :), &
-            volumes(g))
+         call strain_matrix(kind, plane, coordinates, thickness, points(:, g), &
+            b(:, g, :2*element_node_count(kind)), volumes(g))
       end do
+      if (plane == generalized_strain) call set_along_z(kind, coordinates, thickness, points, &
+         b(:, :, 2*element_node_count(kind) + 1:))
       volumes = volumes*weights
       if (present(e) .and. kind == quad4_enhanced) call enhance_strains(coordinates(:, :4), points, &
          plane == axisymmetric, e, volumes, b)
@@ -154,6 +156,22 @@ contains
       end do
    end subroutine strain_matrices
 
+   !> B of the degrees of freedom of a reference node.
+   pure subroutine set_along_z(kind, coordinates, thickness, points, b)
+      integer, intent(in) :: kind
+      real(dp), intent(in) :: coordinates(:, :), thickness, points(:, :)
+      real(dp), intent(out) :: b(:, :, :)
+      integer :: g
+
+      b = 0.0_dp
+      associate (n => element_node_count(kind))
+         do g = 1, size(points, 2)
+            b(3, g, :) = strain_along_z(matmul(coordinates(:, :n), element_shape(kind, &
+               points(:, g))) - coordinates(:, n + 1), thickness)
+         end do
+      end associate
+   end subroutine set_along_z
+
    !> B at a point, and the volume per d xi d eta.
    pure subroutine strain_matrix(kind, plane, coordinates, thickness, point, b, volume)
       integer, intent(in) :: kind, plane
@@ -162,9 +180,6 @@ contains
       real(dp) :: gradients(2, element_node_count(kind)), psi(element_node_count(kind))
       real(dp) :: jacobian, radius
 
-      integer :: n
-
-      n = 2*size(psi)
       call element_gradients(kind, coordinates, point, gradients, jacobian)
       b = 0.0_dp
       radius = 0.0_dp
@@ -172,16 +187,12 @@ contains
          psi = element_shape(kind, point)
          radius = dot_product(psi, coordinates(1, :))
          b(3, 1::2) = psi/radius
-      else if (plane == generalized_strain) then
-         psi = element_shape(kind, point)
-         b(3, n + 1:) = strain_along_z(matmul(coordinates(:, :size(psi)), psi) - &
-            coordinates(:, size(psi) + 1), thickness)
       end if
       volume = jacobian*area_factor(radius, thickness, plane == axisymmetric)
-      b(1, 1:n:2) = gradients(1, :)
-      b(2, 2:n:2) = gradients(2, :)
-      b(4, 1:n:2) = gradients(2, :)
-      b(4, 2:n:2) = gradients(1, :)
+      b(1, 1::2) = gradients(1, :)
+      b(2, 2::2) = gradients(2, :)
+      b(4, 1::2) = gradients(2, :)
+      b(4, 2::2) = gradients(1, :)
    end subroutine strain_matrix
 
    !> Largest magnitudes of a principal strain, thermal strain included, and of the rotation in the
