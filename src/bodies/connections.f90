@@ -54,7 +54,8 @@ module connections
       type(equation_type), allocatable :: equations(:)        !! equations of the deck
       type(equation_type), allocatable :: elongations(:)      !! of springs and trusses
       type(partner_type), allocatable :: partners(:)          !! nodes with axes of their own
-      !> degrees of freedom of the strains along z, which all elements of their sections have
+      !> degrees of freedom of the strains along z, which all elements of their sections have;
+      !> unallocated where there are none
       integer, allocatable :: along_z(:)
    contains
       procedure :: vary_with_temperature
@@ -155,8 +156,8 @@ contains
       if (allocated(model%equations)) row%equations = model%equations
       allocate (row%elongations(0))
       if (allocated(model%bars)) row%elongations = model%bars%elongation
-      row%along_z = strain_freedoms(model%sections)
       row%mortar = interfaces%mortar
+      if (any(model%sections%reference(1) > 0)) row%along_z = strain_freedoms(model%sections)
       call find_resolved_faces(model, row)
       do i = 1, size(interfaces)
          interfaces(i)%contact_row_type = contact_row_type()

@@ -55,7 +55,7 @@ contains
 
       rows = displacement_rows(prescribed, points, slave_leads)
       rows%on_tail(2::2) = has_friction
-      rows%last_dofs = points%along_z
+      if (allocated(points%along_z)) rows%last_dofs = points%along_z
       call eliminate_divided(rows, in_use(used, points, .false.), constraints, division)
    end subroutine constrain_displacements
 
@@ -175,7 +175,7 @@ contains
       do i = 1, size(points%elongations)
          dofs(points%elongations(i)%places()) = .true.
       end do
-      dofs(points%along_z) = .true.
+      if (allocated(points%along_z)) dofs(points%along_z) = .true.
    end function in_use
 
    !> Adds the rows of the equations of a field. Their first terms are to be written by the others.

@@ -229,8 +229,11 @@ contains
       residual = force_residual(internal, next%force_load, bodies%points, next%contact)
       call bodies%mechanical%map%carry_over(residual)
       ! What bodies have along z balances nothing in the plane.
-      internal(bodies%points%along_z) = merge(0.0_dp, residual(bodies%points%along_z), &
-         loads%displacement%active(bodies%points%along_z))
+      if (allocated(bodies%points%along_z)) then
+         associate (dofs => bodies%points%along_z)
+            internal(dofs) = merge(0.0_dp, residual(dofs), loads%displacement%active(dofs))
+         end associate
+      end if
       associate (prescribed => loads%displacement%active)
          scales%force = max(maxval(abs(residual), mask=prescribed), maxval(abs(next%force_load)), &
             sum(next%contact%force), noise*stiffness*scales%length, &

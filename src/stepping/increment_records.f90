@@ -77,7 +77,7 @@ contains
                bodies%points%partners, reshape(next%force_load, shape(record%fields%reaction)))
             if (allocated(model%couplings)) record%pre_tension = &
                record%fields%external_force(1, section_nodes(model%couplings))
-            if (size(bodies%points%along_z) > 0) call take_along_z(bodies%points%along_z, record)
+            if (allocated(bodies%points%along_z)) call take_along_z(bodies%points%along_z, record)
             if (recovers) call recovery%recover_stress(model, record%fields%displacement, &
                next%stress_temperature - model%initial_temperature, next%history, &
                record%fields%stress, record%stress_error)
