@@ -175,7 +175,7 @@ contains
       request%value = given(merge(2, 3, keyword == 'TEMPERATURE'))
       request%component = dof
       taken = .false.
-      if (keyword /= 'TEMPERATURE') call take_along_z(data, dof, request, deck, taken)
+      if (keyword /= 'TEMPERATURE') call take_along_z(data, dof, request, deck, taken, valid)
       if (taken) return
       nodes = rotations_of(dof, request, deck%model)
       if (keyword == 'CLOAD') request%component = place_in_plane(request, deck%model, dof)
@@ -285,7 +285,7 @@ contains
       integer :: i
       logical :: taken
 
-      call take_along_z(data, dof, request, deck, taken)
+      call take_along_z(data, dof, request, deck, taken, valid)
       if (taken) return
       nodes = rotations_of(dof, request, deck%model)
       if (size(nodes) > 0) then
@@ -329,12 +329,13 @@ contains
 
    !> Takes a request for reference nodes of sections, which have degrees of freedom 3, 4 and 5 in
    !> generalized plane strain.
-   subroutine take_along_z(data, dof, request, deck, taken)
+   subroutine take_along_z(data, dof, request, deck, taken, valid)
       type(data_card_type), intent(in) :: data
       integer, intent(in) :: dof
       type(request_type), intent(in) :: request
       type(deck_type), intent(inout) :: deck
       logical, intent(out) :: taken                    ! also after an error
+      logical, intent(inout) :: valid
       type(request_type) :: own
       integer, allocatable :: members(:)
       integer :: i, s
@@ -346,7 +347,8 @@ contains
          i = findloc([(any(known == members(i)), i=1, size(members))], .true., dim=1)
          taken = i > 0
          if (.not. taken) return
-         if (dof < 3 .or. dof > 5) then
+         valid = any(dof == [3, 4, 5])
+         if (.not. valid) then
             call deck%error(data%place(2), 'degree of freedom '//to_text(dof)//' of node '// &
                to_text(deck%mesh%node_number(members(i)))//', which is a REF NODE: it has 3, 4 and 5')
             return
@@ -356,7 +358,8 @@ contains
          own%component = merge(2, 1, dof == 4)
          do i = 1, size(members)
             s = findloc(sections%reference(1), members(i), dim=1)
-            if (s == 0) then
+            valid = s > 0
+            if (.not. valid) then
                call deck%error(data%place(1), 'REF NODE and other nodes are in one set; name '// &
                   'them on cards of their own')
                return
