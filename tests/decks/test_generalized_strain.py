@@ -8,72 +8,14 @@ import pytest
 from blocks import without_unused_surfaces, write
 from changes import note_changes
 from deck_runs import CYLINDER, solve
+from free_ends import (HEIGHT, KINDS, MODULUS, STRAIN, THICK, WIDTH, bar, bent, corner, forces,
+                       general, hot_ring)
 from inelastic import A, N, YOUNG, law, step
-from physics import follows, judge, material, mesh, nodes_of
+from physics import follows, judge, material, mesh
 from test_inelastic import balances
 from test_restart import assert_same, go_on
 
-import creeping_fit
 import lame
-
-WIDTH, HEIGHT, THICK, MODULUS = 4.0, 2.0, 1.5, 1000.0
-KINDS = ["CPEG8", "CPEG8R", "CPEG4I", "CPEG6"]
-
-
-def general(cards, node=900, place=(0.0, 0.0), thickness=THICK):
-    """Return the cards of a body with a reference node; they end with its section."""
-    return ["*NODE", f"{node}, {place[0]!r}, {place[1]!r}", *cards[:-1],
-            f"{cards[-1]}, REF NODE={node}", f"{thickness!r}"]
-
-
-def corner(cards, x, y):
-    """Return the number of the node at a place, which the deck may have."""
-    places = nodes_of(cards)
-    return min(places, key=lambda n: np.hypot(places[n][0] - x, places[n][1] - y))
-
-
-def bar(kind="CPEG8", place=(0.0, 0.0), counts=(2, 2), **more):
-    """Return a bar that nothing holds along z, without rigid motions."""
-    body = mesh("BODY", [float(x) for x in np.linspace(-2.0, 2.0, counts[0] + 1)],
-                [float(y) for y in np.linspace(-1.0, 1.0, counts[1] + 1)], kind)
-    given = material("BODY", **({"elastic": (MODULUS, 0.3)} | more))
-    return [*body, *general(given, place=place), "*BOUNDARY",
-            f"{corner(body, -2, -1)}, 1, 2", f"{corner(body, 2, -1)}, 2"]
-
-
-def forces(strain, place):
-    """Return force and moments about a place of a strain along z a + b y + c x."""
-    a, b, c = strain
-    area = WIDTH * HEIGHT
-    force = MODULUS * a * area
-    about_x = MODULUS * b * area * HEIGHT**2 / 12 - force * place[1]
-    about_y = -MODULUS * c * area * WIDTH**2 / 12 + force * place[0]
-    return force, about_x, about_y
-
-
-def freedoms(strain, place):
-    """Return degrees of freedom 3 to 5 of a reference node."""
-    a, b, c = strain
-    return THICK * (a + b * place[1] + c * place[0]), THICK * b, -THICK * c
-
-
-STRAIN = 2e-3, 1e-3, -4e-4
-
-
-def bent(strain, place, kind, is_loaded):
-    """Return a bar under force and moments, or with given strains, and its checks."""
-    known = forces(strain, place), freedoms(strain, place)
-    given = known[0] if is_loaded else known[1]
-    keyword, between = ("*CLOAD", "{0}") if is_loaded else ("*BOUNDARY", "{0}, {0}")
-    most = MODULUS * (strain[0] + strain[1] - 2 * strain[2])
-    return [*bar(kind, place), *step("*STATIC", "1., 1.", keyword, *(
-        f"900, {between.format(dof)}, {value!r}"
-        for dof, value in zip((3, 4, 5), given, strict=True)))], [
-            *((name, "900", "LAST", value, 1e-9) for name, value in zip(
-                ("RF3", "RM1", "RM2", "U3", "UR1", "UR2"), [*known[0], *known[1]], strict=True)),
-            ("S33", "MAX", "LAST", most, 1e-9), ("S11", "MAX", "LAST", 0.0, 1e-9, "ABS"),
-            ("S22", "MAX", "LAST", 0.0, 1e-9, "ABS"), ("S12", "MAX", "LAST", 0.0, 1e-9, "ABS"),
-            ("force_imbalance", "", "LAST", 0.0, 1e-10, "ABS")]
 
 
 @pytest.mark.parametrize("kind", KINDS)
@@ -207,6 +149,16 @@ def test_a_force_along_z_cools_a_bar(tmp_path):
                      *step("*COUPLED TEMPERATURE-DISPLACEMENT, DIRECT, DILATATION=YES", "1., 1.",
                            "*CLOAD", f"900, 3, {stress * WIDTH * HEIGHT!r}")],
           [("NT", "BODY", "LAST", start - start * growth * stress / capacity, 1e-12)])
+
+
+@pytest.mark.parametrize("kind", ["CPEG8R", "CPEG8", "CPEG6"])
+def test_a_hot_ring_has_no_force_along_z(tmp_path, kind):
+    cards, known = hot_ring(32, kind)
+    (node, grown), bore, outside = known.values()
+    judge(tmp_path, without_unused_surfaces(cards), [
+        ("U3", node, "LAST", grown, 2e-6), ("RF3", node, "LAST", 0.0, 1e-9, "ABS"),
+        ("UR1", node, "LAST", 0.0, 1e-12, "ABS"), ("UR2", node, "LAST", 0.0, 1e-12, "ABS"),
+        ("S33", bore[0], "LAST", bore[1], 0.02), ("S33", outside[0], "LAST", outside[1], 0.02)])
 
 
 RADII = 20.0, 50.0, 100.0
