@@ -139,7 +139,7 @@ contains
       if (plane == generalized_strain) call set_along_z(kind, coordinates, thickness, points, &
          b(:, :, 2*element_node_count(kind) + 1:))
       volumes = volumes*weights
-      if (present(e) .and. kind == quad4_enhanced) call enhance_strains(coordinates(:, :4), points, &
+      if (present(e) .and. kind == quad4_enhanced) call enhance_strains(coordinates, points, &
          plane == axisymmetric, e, volumes, b)
       if (kind /= quad4 .or. plane == plane_stress) return
       ! Mean of eps_xx + eps_yy + eps_zz over the volume, per degree of freedom.

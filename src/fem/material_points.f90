@@ -450,8 +450,8 @@ contains
          call find_strains(self%rules(kind), self%inverse(:, first), u, strain, warmth)
          if (plane == axisymmetric) call add_hoop_strain(self%rules(kind), nodes, &
             mesh%coordinates, displacement, strain(:n, 3))
-         if (plane == generalized_strain) call add_strain_along_z(self, mesh, element, displacement, &
-            strain(:n, 3))
+         if (plane == generalized_strain) call add_strain_along_z(self, mesh, element, &
+            displacement, strain(:n, 3))
          if (kind == quad4 .and. plane /= plane_stress) call set_mean_dilatation( &
             self%volume(first:first + n - 1), strain)
          i = self%material(element)

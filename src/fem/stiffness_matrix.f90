@@ -25,6 +25,7 @@ contains
       type(element_assembly_type) :: assembly
       type(triplet_list_type) :: along_z
       real(dp), allocatable :: k(:, :)
+      integer, allocatable :: others(:), own(:)    ! degrees of freedom
       real(dp) :: e(4, 4, most_points)
       integer :: element, g, n
 
@@ -43,11 +44,11 @@ contains
                   section%reference(1)]), e(:, :, :n), section%thickness)
                n = 2*size(nodes)
                call assembly%add(nodes, k(:n, :n))
-               associate (own => displacements_of(nodes), others => strain_freedoms([section]))
-                  call along_z%add_block(own, others, k(:n, n + 1:))
-                  call along_z%add_block(others, own, k(n + 1:, :n))
-                  call along_z%add_block(others, others, k(n + 1:, n + 1:))
-               end associate
+               own = displacements_of(nodes)
+               others = strain_freedoms([section])
+               call along_z%add_block(own, others, k(:n, n + 1:))
+               call along_z%add_block(others, own, k(n + 1:, :n))
+               call along_z%add_block(others, others, k(n + 1:, n + 1:))
                cycle
             end if
             call assembly%add(nodes, element_stiffness(kind, plane, mesh%coordinates(:, nodes), &

@@ -142,7 +142,8 @@ contains
       integer, intent(in) :: element_points(:, :)         !! (8, elements) points, like the nodes
       type(string_type), intent(in) :: cards(:)           !! card images as read
       type(error_type), allocatable, intent(out) :: error !! what went wrong
-      type(quantity_type), allocatable :: along_z(:), of_cuts(:), of_history_alone(:), of_stability(:)
+      type(quantity_type), allocatable :: along_z(:), of_cuts(:), of_history_alone(:), &
+         of_stability(:)
       logical :: has(0:last_need)
       integer :: bodies, i, expected, n
 

@@ -350,7 +350,8 @@ contains
          valid = any(dof == [3, 4, 5])
          if (.not. valid) then
             call deck%error(data%place(2), 'degree of freedom '//to_text(dof)//' of node '// &
-               to_text(deck%mesh%node_number(members(i)))//', which is a REF NODE: it has 3, 4 and 5')
+               to_text(deck%mesh%node_number(members(i)))//', which is a REF NODE: it has 3, 4 '// &
+               'and 5')
             return
          end if
          own = request

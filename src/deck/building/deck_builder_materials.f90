@@ -325,8 +325,8 @@ contains
       call find_reference('REF NODE', card, deck, node)
       if (node == 0) return
       if (any(deck%mesh%element_nodes == node)) call deck%error(card%place_of('REF NODE'), &
-         'elements have node '//to_text(deck%mesh%node_number(node))//': REF NODE= is a node of '// &
-         'its own')
+         'elements have node '//to_text(deck%mesh%node_number(node))//': REF NODE= is a node '// &
+         'of its own')
       associate (sections => deck%model%sections)
          other = findloc(sections(:n - 1)%reference(1), node, dim=1)
          sections(n)%reference = [node, unnamed]

@@ -69,7 +69,8 @@ contains
       ! rotation of each coupling and rigid body.
       do k = 1, merge(size(deck%cards%keywords), 0, n > 0)
          associate (card => deck%cards%keywords(k))
-            if (card%name == 'SOLID SECTION' .and. card%has('REF NODE')) call add_unnamed(card, deck)
+            if (card%name == 'SOLID SECTION' .and. card%has('REF NODE')) call add_unnamed(card, &
+               deck)
          end associate
       end do
       do k = 1, merge(size(deck%cards%keywords), 0, n > 0)
