@@ -17,6 +17,7 @@ module operator_corrections
    use anderson_mixing, only: mixing_type
    use element_kinds, only: element_node_count
    use errors, only: error_type, set_error, status_no_convergence
+   use field_problem, only: largest_of
    use field_quantities, only: von_mises
    use heat_equation, only: heat_equation_type
    use increment_data, only: stage_type
@@ -561,12 +562,14 @@ contains
             ! Inelastic strains may be far larger than the elastic ones.
             force = max(self%largest_force, least(2))
          else
-            force = max(maxval(abs(self%values(2*n + 1:))), least(2))
-            if (allocated(bodies%mechanical%matrix%value)) force = max(force, &
-               maxval(abs(bodies%mechanical%matrix%multiply(next%displacement))))
+            force = max(maxval(abs(bodies%evened(self%values(2*n + 1:)))), least(2))
+            if (allocated(bodies%mechanical%matrix%value)) force = max(force, maxval(abs( &
+               bodies%evened(bodies%mechanical%matrix%multiply(next%displacement)))))
          end if
          scale(:2*n) = max(heat, tiny(heat))
          scale(2*n + 1:) = max(force, tiny(force))
+         if (allocated(bodies%mechanical%lever)) scale(2*n + bodies%points%along_z) = &
+            scale(2*n + 1)*bodies%mechanical%lever
       end associate
    end function scales_of
 
@@ -581,10 +584,10 @@ contains
       real(dp) :: shift, stored, thermal_load, warmth
 
       warmth = maxval(abs(next%temperature))
-      shift = maxval(abs(next%displacement))
+      shift = bodies%largest_displacement(next%displacement)
       thermal_load = 0.0_dp
       if (allocated(bodies%thermal_load%value)) thermal_load = &
-         maxval(abs(bodies%thermal_load%value))
+         largest_of(bodies%thermal_load, bodies%points%along_z)
       terms(1) = bodies%thermal%largest_entry*warmth
       if (self%stage%stores_heat) then
          stored = max(maxval(abs(self%stage%content)), maxval(bodies%capacity%multiply( &
@@ -596,7 +599,7 @@ contains
       terms(2) = max(bodies%mechanical%largest_entry*shift, thermal_load*max(warmth, &
          maxval(abs(model%initial_temperature)), maxval(abs(model%materials%no_strain))))
       if (allocated(self%initial_force)) terms(2) = max(terms(2), &
-         maxval(abs(self%initial_force)))
+         maxval(abs(bodies%evened(self%initial_force))))
    end function largest_terms
 
 end module operator_corrections
