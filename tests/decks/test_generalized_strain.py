@@ -11,6 +11,7 @@ from deck_runs import CYLINDER, solve
 from free_ends import (HEIGHT, KINDS, MODULUS, STRAIN, THICK, WIDTH, bar, bent, corner, forces,
                        general, hot_ring)
 from inelastic import A, N, YOUNG, law, step
+from pellets import rod
 from physics import follows, judge, material, mesh
 from test_inelastic import balances
 from test_restart import assert_same, go_on
@@ -80,6 +81,41 @@ def test_bodies_with_one_reference_node_have_one_strain(tmp_path):
           [("U3", "900", "LAST", THICK * mean, 1e-9), ("RF3", "900", "LAST", 0.0, 1e-9, "ABS"),
            *(("S33", name, "LAST", young[k] * (mean - growth[k] * warmth), 1e-9)
              for k, name in enumerate(("ONE", "TWO")))])
+
+
+def test_one_of_two_bodies_with_one_strain_yields(tmp_path):
+    """N = Y A of the one that yields, and E A e of the other."""
+    limit, strain, cards, held = 2.0, 5e-3, ["*NODE", "900, 5., 5."], []
+    for k, (name, laws) in enumerate((("ONE", ["*PLASTIC", f"{limit}"]), ("TWO", []))):
+        body = mesh(name, [10.0 * k, 10.0 * k + 1.0, 10.0 * k + 2.0], [0.0, 1.0], "CPEG8R",
+                    first=100 * k + 1)
+        given = law(*laws, elastic=(MODULUS, 0.3), name=name)
+        cards += [*body, *given[:-1], given[-1] + ", REF NODE=900", f"{THICK}"]
+        held += [f"{corner(body, 10 * k, 0)}, 1, 2", f"{corner(body, 10 * k + 2, 0)}, 2"]
+    judge(tmp_path, [*cards, "*BOUNDARY", *held, *step(
+        "*STATIC", "0.25, 1.", "*BOUNDARY", f"900, 3, 3, {strain * THICK!r}", "900, 4, 5")],
+          [("RF3", "900", "LAST", 2.0 * (limit + MODULUS * strain), 1e-8),
+           ("S33", "ONE", "LAST", limit, 1e-8), ("S33", "TWO", "LAST", MODULUS * strain, 1e-8)])
+
+
+@pytest.mark.parametrize("kind", ["CAX4", "mortar", "transient"])
+def test_a_sparse_tail_has_the_strains_of_all_bodies(tmp_path, kind):
+    """A stack of three plates beside a wall, each with a reference node, with friction and heat."""
+    found = []
+    for tail in ("FULL", "SPARSE"):
+        cards, number = [], 900000
+        for card in rod(3, tail, kind):
+            if card.startswith("*SOLID SECTION"):
+                number += 1
+                cards = ["*NODE", f"{number}, 2., 5.", *cards]
+                card += f", REF NODE={number}"
+            cards += ["TUBE.RIGHT, 1"] if card == "TUBE.BOTTOM, 2" else []
+            cards.append(card.replace("TYPE=CAX", "TYPE=CPEG").replace("1E-12", "1E-10"))
+        with h5py.File(solve(write(tmp_path / f"{tail}.inp", cards))) as file:
+            found.append([file[f"history/{name}"][-1] for name in ("U3", "UR1", "UR2")]
+                         + [file[f"contact/{name}/pressure"][-1] for name in ("W0", "W1", "E1")])
+    for full, sparse in zip(*found, strict=True):
+        assert sparse == pytest.approx(full, abs=1e-9 * np.max(np.abs(full)))
 
 
 def test_a_bar_yields_under_a_force_along_z(tmp_path):
