@@ -108,8 +108,8 @@ contains
       if (allocated(self%displacement)) deallocate (self%displacement)
       associate (fields => record%fields)
          counts = in_plane(model%sections, size(counts))
-         if (allocated(fields%reaction_heat)) self%heat = [minval(fields%temperature, mask=counts), &
-            maxval(fields%temperature, mask=counts), record%heat_in, record%heat_out]
+         if (allocated(fields%reaction_heat)) self%heat = [minval(fields%temperature, &
+            mask=counts), maxval(fields%temperature, mask=counts), record%heat_in, record%heat_out]
          if (allocated(fields%stress)) self%displacement = maxval(norm2(fields%displacement, &
             dim=1), mask=counts)
       end associate
