@@ -13,6 +13,7 @@ module connections
    use friction_laws, only: friction_heat_type, friction_law_type, unlimited
    use local_refinement, only: hanging_rows
    use kinds, only: dp
+   use materials, only: strain_freedoms
    use mesh, only: mesh_type
    use model, only: model_type
    use mortar_segments, only: hat_geometry_type
@@ -55,6 +56,9 @@ module connections
       type(equation_type), allocatable :: equations(:)        !! equations of the deck
       type(equation_type), allocatable :: elongations(:)      !! of springs and trusses
       type(partner_type), allocatable :: partners(:)          !! nodes with axes of their own
+      !> degrees of freedom of the strains along z, which all elements of their sections have;
+      !> unallocated where there are none
+      integer, allocatable :: along_z(:)
    contains
       procedure :: vary_with_temperature
       procedure :: means
@@ -174,6 +178,7 @@ contains
       allocate (row%elongations(0))
       if (allocated(model%bars)) row%elongations = model%bars%elongation
       row%mortar = interfaces%mortar
+      if (any(model%sections%reference(1) > 0)) row%along_z = strain_freedoms(model%sections)
       call find_resolved_faces(model, row)
       do i = 1, size(interfaces)
          interfaces(i)%contact_row_type = contact_row_type()

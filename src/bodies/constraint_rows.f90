@@ -57,6 +57,9 @@ module constraint_rows
       logical, allocatable :: on_tail(:)        !! (introduced values) those that contact acts on
       !> (dofs) those that it acts on likewise; unallocated where there are none
       logical, allocatable :: dof_on_tail(:)
+      !> degrees of freedom to be eliminated last, because many others are joined to them;
+      !> unallocated for none
+      integer, allocatable :: last_dofs(:)
       logical :: keeps_all = .false.            !! whether all unknowns are on the tail
       type(row_origin_type), allocatable :: origin(:)   !! (rows) those of one follow each other
       !> (rows) degree of freedom to be written, if left; 0 for any

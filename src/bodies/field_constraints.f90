@@ -55,6 +55,7 @@ contains
 
       rows = displacement_rows(prescribed, points, slave_leads)
       rows%on_tail(2::2) = has_friction
+      if (allocated(points%along_z)) rows%last_dofs = points%along_z
       call eliminate_divided(rows, in_use(used, points, .false.), constraints, division)
    end subroutine constrain_displacements
 
@@ -114,6 +115,7 @@ contains
       if (present(division)) is_divided = allocated(division%graph%value)
       if (is_divided) then
          is_bound = .not. used(rows%components::rows%components)
+         if (allocated(rows%last_dofs)) is_bound((rows%last_dofs + 1)/2) = .true.
          is_prescribed = .false.
          do i = 1, rows%count
             associate (values => rows%values_of(i))
@@ -156,7 +158,7 @@ contains
    end function temperature_rows
 
    !> Degrees of freedom that elements, springs, trusses, equations or contact points have: those of
-   !> a rigid surface have a reference node.
+   !> a rigid surface have a reference node, and strains along z theirs.
    pure function in_use(used, points, thermal) result(dofs)
       logical, intent(in) :: used(:)
       type(connections_type), intent(in) :: points
@@ -181,6 +183,7 @@ contains
       do i = 1, size(points%elongations)
          dofs(points%elongations(i)%places()) = .true.
       end do
+      if (allocated(points%along_z)) dofs(points%along_z) = .true.
    end function in_use
 
    !> Adds the rows of the equations of a field. Their first terms are to be written by the others.

@@ -22,7 +22,8 @@ module field_problem
    use tail_matrix, only: tail_matrix_type
    implicit none
    private
-   public :: field_load_type, field_problem_type, field_reduction_type, solved_loads_type
+   public :: field_load_type, field_problem_type, field_reduction_type, largest_of, &
+      solved_loads_type
 
    !> Part of a load, in its largest entry, that is rounding.
    real(dp), parameter :: rounding = 64*epsilon(1.0_dp)
@@ -39,7 +40,10 @@ module field_problem
    !> Matrix of the bodies.
    type :: field_operator_type
       type(sparse_matrix_type) :: matrix !! (dofs, dofs) bodies alone, both triangles
-      real(dp) :: largest_entry = 0.0_dp                      !! of this matrix
+      real(dp) :: largest_entry = 0.0_dp                      !! of this matrix but what is apart
+      !> (apart) stiffness of degrees of freedom that move a whole body, as a multiple of that, and
+      !> at least 1; unallocated for none
+      real(dp), allocatable :: lever(:)
       integer :: values = 0                                   !! which values it has, counted
    contains
       procedure :: set_matrix
@@ -188,7 +192,9 @@ contains
          end if
          if (allocated(node_rank) .and. .not. allocated(self%rank)) then
             self%rank = node_rank(problem%map%leading_nodes())
+            self%rank(size(self%rank) - problem%map%last + 1:) = maxval(node_rank) + 1
          end if
+         self%solver%joined = problem%map%last
          call self%solver%analyse(lower, problem%map%tail, self%rank, error)
       end if
       if (.not. allocated(error)) call self%solver%factor(lower, error)
@@ -250,14 +256,44 @@ contains
    end subroutine reduce_pieces
 
    !> Gives the matrix new values.
-   subroutine set_matrix(self, matrix)
+   subroutine set_matrix(self, matrix, apart)
       class(field_operator_type), intent(inout) :: self
       type(sparse_matrix_type), intent(in) :: matrix      !! (dofs, dofs) both triangles
+      integer, intent(in), optional :: apart(:)           !! dofs whose entries are far larger
+      integer :: i
 
       self%matrix = matrix
-      self%largest_entry = maxval(abs(matrix%value))
+      self%largest_entry = largest_of(matrix, apart)
       self%values = self%values + 1
+      if (.not. present(apart)) return
+      self%lever = spread(1.0_dp, 1, size(apart))
+      do i = 1, size(apart)
+         associate (own => matrix%row_start(apart(i)), next => matrix%row_start(apart(i) + 1))
+            self%lever(i) = max(1.0_dp, maxval(matrix%value(own:next - 1), &
+               mask=matrix%column(own:next - 1) == apart(i))/self%largest_entry)
+         end associate
+      end do
    end subroutine set_matrix
+
+   !> Largest entry of a matrix but for some rows, and columns of the same numbers.
+   pure real(dp) function largest_of(matrix, apart) result(largest)
+      type(sparse_matrix_type), intent(in) :: matrix
+      integer, intent(in), optional :: apart(:)
+      logical :: counts(max(matrix%row_count, matrix%column_count))
+      integer :: i, k
+
+      largest = maxval(abs(matrix%value))
+      if (.not. present(apart)) return
+      counts = .true.
+      counts(apart) = .false.
+      largest = 0.0_dp
+      do i = 1, matrix%row_count
+         if (.not. counts(i)) cycle
+         do k = matrix%row_start(i), matrix%row_start(i + 1) - 1
+            if (counts(matrix%column(k))) largest = max(largest, abs(matrix%value(k)))
+         end do
+      end do
+   end function largest_of
 
    !> The matrix on the unknowns, its lower triangle.
    pure function matrix_of_unknowns(self, added) result(lower)

@@ -30,6 +30,7 @@ module linear_constraints
    type :: linear_constraints_type
       integer :: equations = 0                      !! unknowns v
       integer :: tail = 0                           !! how many of them, the last, are the tail
+      integer :: last = 0                           !! how many before it are eliminated last
       integer :: components = 1                     !! degrees of freedom of a node
       integer, allocatable :: introduced(:) !! unknowns of introduced values, 0 where none has them
       logical, allocatable :: acts(:)               !! (introduced) whether contact acts on them
@@ -404,17 +405,19 @@ contains
       call set_ties(rows, found, last, constraints)
    end subroutine eliminate
 
-   !> Numbers the unknowns: degrees of freedom, introduced values off the tail, then the tail. On it
-   !> the forces of the links are behind the values that stiffness holds and before those that
-   !> only the links hold: factors without pivoting then have no zero pivot.
+   !> Numbers the unknowns: degrees of freedom, introduced values off the tail, degrees of freedom
+   !> that are eliminated last, then the tail. On it the forces of the links are behind the values
+   !> that stiffness holds and before those that only the links hold: factors without pivoting then
+   !> have no zero pivot.
    pure subroutine number_unknowns(rows, found, used, constraints, unknown)
       type(constraint_rows_type), intent(in) :: rows
       type(elimination_type), intent(in) :: found
       logical, intent(in) :: used(:)
       type(linear_constraints_type), intent(inout) :: constraints
       integer, intent(out) :: unknown(:)
-      logical :: by_link(size(unknown)), enters(size(rows%on_tail)), free(size(used))
-      integer :: i, before_tail
+      logical :: by_link(size(unknown)), enters(size(rows%on_tail)), free(size(used)), &
+         is_last(size(used))
+      integer :: i, before_last, before_tail
 
       by_link = .false.
       do i = 1, rows%count
@@ -425,12 +428,18 @@ contains
          prescribed => by_link(rows%dofs + 1:rows%dofs + size(enters)))
          enters = found%entry(first:first + size(enters) - 1) > 0 .and. .not. prescribed
          free = used .and. found%writer(:rows%dofs) == 0
+         is_last = .false.
+         if (allocated(rows%last_dofs)) is_last(rows%last_dofs) = free(rows%last_dofs)
+         free = free .and. .not. is_last
          if (allocated(rows%dof_on_tail)) then
             call number_chosen(1, free .and. .not. rows%dof_on_tail, unknown, n)
          else
             call number_chosen(1, free, unknown, n)
          end if
          call number_chosen(first, enters .and. .not. rows%on_tail, unknown, n)
+         before_last = n
+         call number_chosen(1, is_last, unknown, n)
+         constraints%last = n - before_last
          before_tail = merge(0, n, rows%keeps_all)
          if (allocated(rows%dof_on_tail)) call number_chosen(1, free .and. rows%dof_on_tail, &
             unknown, n)

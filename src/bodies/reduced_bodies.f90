@@ -84,6 +84,8 @@ module reduced_bodies
       procedure :: form_operators
       procedure :: move_operators
       procedure :: has_operators_of
+      procedure :: evened
+      procedure :: largest_displacement
       procedure :: reduce
    end type reduced_bodies_type
 
@@ -419,7 +421,7 @@ contains
          end if
          if (allocated(self%tangent)) call points%take_tangents(mesh, self%tangent)
          if (with_mechanics) call self%mechanical%set_matrix(assemble_stiffness(mesh, sections, &
-            points))
+            points), self%points%along_z)
          if (with_strain) self%thermal_load = assemble_thermal_load(mesh, sections, points)
          if (with_mechanics .and. allocated(model%bars)) call add_bars(self, model, with_strain)
          if (with_heat) call self%thermal%set_matrix(assemble_conduction(mesh, sections, points))
@@ -439,7 +441,7 @@ contains
       associate (nodes => size(model%mesh%node_number))
          self%bar_stiffness = bar_stiffness(model%bars, nodes)
          call self%mechanical%set_matrix(linear_combination(1.0_dp, self%mechanical%matrix, &
-            1.0_dp, self%bar_stiffness))
+            1.0_dp, self%bar_stiffness), self%points%along_z)
          if (.not. with_strain) return
          self%bar_load = bar_thermal_load(model%bars, nodes)
          self%thermal_load = linear_combination(1.0_dp, self%thermal_load, 1.0_dp, self%bar_load)
@@ -469,6 +471,33 @@ contains
       if (has) has = all(abs(self%operators_at - temperature) <= 0.0_dp)
       if (has .and. allocated(tangent)) has = all(abs(self%tangent - tangent) <= 0.0_dp)
    end function has_operators_of
+
+   !> Nodal forces, those along z, which act on whole bodies, divided by how much stiffer bodies are
+   !> against them.
+   pure function evened(self, forces) result(even)
+      class(reduced_bodies_type), intent(in) :: self !! assembled
+      real(dp), intent(in) :: forces(:)                      !! (2 nodes)
+      real(dp) :: even(size(forces))                         !! (2 nodes)
+
+      even = forces
+      if (allocated(self%mechanical%lever)) even(self%points%along_z) = &
+         forces(self%points%along_z)/self%mechanical%lever
+   end function evened
+
+   !> The largest displacement in the plane.
+   pure real(dp) function largest_displacement(self, displacement) result(largest)
+      class(reduced_bodies_type), intent(in) :: self
+      real(dp), intent(in) :: displacement(:)                !! (2 nodes) [length]
+      real(dp), allocatable :: in_plane(:)
+
+      if (allocated(self%points%along_z)) then
+         in_plane = displacement
+         in_plane(self%points%along_z) = 0.0_dp
+         largest = maxval(abs(in_plane))
+      else
+         largest = maxval(abs(displacement))
+      end if
+   end function largest_displacement
 
    !> rho c of the elements at the means of temperatures of their nodes.
    pure function capacities(model, temperature) result(capacity)

@@ -179,7 +179,7 @@ contains
          data%fixed_point = step%fixed_point
          data%follows_branch = step%continuation%is_on
          data%kept_imbalance = before%keeps_imbalance
-         data%displacement_scale = maxval(abs(before%displacement))
+         data%displacement_scale = bodies%largest_displacement(before%displacement)
          data%previous = before%contact
          call adapt_contact(bodies, data%previous)
          omega = law_conductance(bodies, before%temperature, before%jump, data%previous)

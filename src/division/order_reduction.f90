@@ -66,6 +66,11 @@ contains
             if (line%rotation > 0) line%rotation = new_index(line%rotation)
          end associate
       end do
+      do i = 1, size(model%sections)
+         associate (section => model%sections(i))
+            if (section%reference(1) > 0) section%reference = new_index(section%reference)
+         end associate
+      end do
       if (model%load_node > 0) model%load_node = new_index(model%load_node)
       call reduce_mesh(new_index, model%mesh)
       model%element_order = 1

@@ -2,6 +2,10 @@
 !> yy, zz, xy, the shear strain being an angle; degrees of freedom u_x, u_y of node 1, u_x, u_y of
 !> node 2, ... In an axisymmetric element x is the radius and zz the circumference: eps_zz = u_x/r.
 !>
+!> In generalized plane strain the coordinates end with those of the reference node, and three
+!> degrees of freedom follow those of the nodes: with x and y from the reference node and t for the
+!> thickness, eps_zz = (u_z + phi_x y - phi_y x)/t.
+!>
 !> Four-node elements of plane strain and axisymmetric ones use the mean dilatation of the element
 !> in place of that at each point (B-bar: Hughes, Int. J. Num. Meth. Eng. 15 (1980) 1413), so that
 !> nearly incompressible materials do not lock them. Those with incompatible modes have enhanced
@@ -9,12 +13,14 @@
 module element_elasticity
    use blas_lapack, only: dgemm
    use element_integrals, only: area_factor
-   use element_kinds, only: axisymmetric, element_node_count, kind_count, plane_stress, quad4, &
-      quad4_enhanced
+   use element_kinds, only: axisymmetric, element_node_count, generalized_strain, kind_count, &
+      plane_stress, quad4, quad4_enhanced
    use enhanced_strains, only: enhance_strains
    use field_recovery, only: recovery_rules
    use kinds, only: dp
+   use materials, only: section_type
    use mesh, only: mesh_type
+   use point_gradients, only: strain_along_z
    use point_rules, only: point_rule_type
    use quadrature, only: integration_rule, point_count
    use shape_functions, only: element_gradients, element_shape
@@ -28,17 +34,25 @@ module element_elasticity
 
 contains
 
+   !> Degrees of freedom of an element: two a node, three of a reference node.
+   pure integer function freedoms(kind, coordinates)
+      integer, intent(in) :: kind
+      real(dp), intent(in) :: coordinates(:, :)
+
+      freedoms = 3*size(coordinates, 2) - element_node_count(kind)
+   end function freedoms
+
    !> Stiffness matrix, the element's part of K^n in (2.4): integral of B^T E B.
    pure function element_stiffness(kind, plane, coordinates, e, thickness) result(k)
       integer, intent(in) :: kind                 !! kind of the element
       integer, intent(in) :: plane                !! plane_strain, ...
-      real(dp), intent(in) :: coordinates(:, :)   !! (2, nodes of the kind) [length]
+      real(dp), intent(in) :: coordinates(:, :)   !! (2, nodes) as above [length]
       !> (4, 4, points of integration_rule, or 1 for all) [stress]
       real(dp), intent(in) :: e(:, :, :)
       real(dp), intent(in) :: thickness           !! thickness; not of axisymmetric ones [length]
-      real(dp) :: k(2*element_node_count(kind), 2*element_node_count(kind)) !! [stress length]
-      real(dp) :: b(4, point_count(kind), 2*element_node_count(kind)), volumes(point_count(kind))
-      real(dp) :: stress(4, point_count(kind), 2*element_node_count(kind)), weighted(4, 4)
+      real(dp) :: k(freedoms(kind, coordinates), freedoms(kind, coordinates)) !! [stress length]
+      real(dp) :: b(4, point_count(kind), size(k, 1)), volumes(point_count(kind))
+      real(dp) :: stress(4, point_count(kind), size(k, 1)), weighted(4, 4)
       integer :: g, j
 
       call strain_matrices(kind, plane, coordinates, thickness, b, volumes, e)
@@ -61,17 +75,17 @@ contains
    pure function element_thermal_load(kind, plane, coordinates, e, beta, thickness) result(load)
       integer, intent(in) :: kind                 !! kind of the element
       integer, intent(in) :: plane                !! plane_strain, ...
-      real(dp), intent(in) :: coordinates(:, :)   !! (2, nodes of the kind) [length]
+      real(dp), intent(in) :: coordinates(:, :)   !! (2, nodes) as above [length]
       !> (4, 4, points of integration_rule, or 1 for all) [stress]
       real(dp), intent(in) :: e(:, :, :)
       !> (4, points of integration_rule, or 1 for all) [stress/temperature]
       real(dp), intent(in) :: beta(:, :)
       real(dp), intent(in) :: thickness           !! thickness; not of axisymmetric ones [length]
-      !> (2 nodes, nodes) [stress length^2/temperature]
-      real(dp) :: load(2*element_node_count(kind), element_node_count(kind))
-      real(dp) :: b(4, point_count(kind), 2*element_node_count(kind)), volumes(point_count(kind))
+      !> (degrees of freedom, nodes) [stress length^2/temperature]
+      real(dp) :: load(freedoms(kind, coordinates), element_node_count(kind))
+      real(dp) :: b(4, point_count(kind), size(load, 1)), volumes(point_count(kind))
       real(dp) :: points(2, point_count(kind)), weights(point_count(kind))
-      real(dp) :: psi(element_node_count(kind)), force(2*element_node_count(kind))
+      real(dp) :: psi(element_node_count(kind)), force(size(load, 1))
       integer :: g, i, q
 
       call integration_rule(kind, points, weights)
@@ -92,11 +106,11 @@ contains
    pure function element_stress_force(kind, plane, coordinates, stress, thickness) result(force)
       integer, intent(in) :: kind                 !! kind of the element
       integer, intent(in) :: plane                !! plane_strain, ...
-      real(dp), intent(in) :: coordinates(:, :)   !! (2, nodes of the kind) [length]
+      real(dp), intent(in) :: coordinates(:, :)   !! (2, nodes) as above [length]
       real(dp), intent(in) :: stress(4)           !! xx, yy, zz, xy [stress]
       real(dp), intent(in) :: thickness           !! thickness; not of axisymmetric ones [length]
-      real(dp) :: force(2*element_node_count(kind))   !! (2 nodes) [force]
-      real(dp) :: b(4, point_count(kind), 2*element_node_count(kind)), volumes(point_count(kind))
+      real(dp) :: force(freedoms(kind, coordinates))   !! [force]
+      real(dp) :: b(4, point_count(kind), size(force)), volumes(point_count(kind))
       integer :: g
 
       call strain_matrices(kind, plane, coordinates, thickness, b, volumes)
@@ -119,9 +133,11 @@ contains
 
       call integration_rule(kind, points, weights)
       do g = 1, size(weights)
-         call strain_matrix(kind, plane, coordinates, thickness, points(:, g), b(:, g, :), &
-            volumes(g))
+         call strain_matrix(kind, plane, coordinates, thickness, points(:, g), &
+            b(:, g, :2*element_node_count(kind)), volumes(g))
       end do
+      if (plane == generalized_strain) call set_along_z(kind, coordinates, thickness, points, &
+         b(:, :, 2*element_node_count(kind) + 1:))
       volumes = volumes*weights
       if (present(e) .and. kind == quad4_enhanced) call enhance_strains(coordinates, points, &
          plane == axisymmetric, e, volumes, b)
@@ -139,6 +155,22 @@ contains
          end do
       end do
    end subroutine strain_matrices
+
+   !> B of the degrees of freedom of a reference node.
+   pure subroutine set_along_z(kind, coordinates, thickness, points, b)
+      integer, intent(in) :: kind
+      real(dp), intent(in) :: coordinates(:, :), thickness, points(:, :)
+      real(dp), intent(out) :: b(:, :, :)
+      integer :: g
+
+      b = 0.0_dp
+      associate (n => element_node_count(kind))
+         do g = 1, size(points, 2)
+            b(3, g, :) = strain_along_z(matmul(coordinates(:, :n), element_shape(kind, &
+               points(:, g))) - coordinates(:, n + 1), thickness)
+         end do
+      end associate
+   end subroutine set_along_z
 
    !> B at a point, and the volume per d xi d eta.
    pure subroutine strain_matrix(kind, plane, coordinates, thickness, point, b, volume)
@@ -165,8 +197,9 @@ contains
 
    !> Largest magnitudes of a principal strain, thermal strain included, and of the rotation in the
    !> plane, at the points where stress is recovered.
-   pure subroutine largest_deformation(mesh, displacement, largest, element)
+   pure subroutine largest_deformation(mesh, sections, displacement, largest, element)
       type(mesh_type), intent(in) :: mesh
+      type(section_type), intent(in) :: sections(:)
       real(dp), intent(in) :: displacement(:, :)    !! (2, nodes) [length]
       real(dp), intent(out) :: largest(2)           !! of_strain [-], of_rotation [radian]
       integer, intent(out) :: element(2)            !! indexes of the elements that have them
@@ -179,12 +212,31 @@ contains
       element = 0
       do e = 1, size(mesh%element_kind)
          there = element_deformation(mesh, e, displacement, rules(mesh%element_kind(e)))
+         if (mesh%element_plane(e) == generalized_strain) there(of_strain) = max(there(of_strain), &
+            largest_along_z(mesh, e, sections(mesh%element_section(e)), displacement))
          where (there > largest)
             largest = there
             element = e
          end where
       end do
    end subroutine largest_deformation
+
+   !> Largest magnitude of eps_zz in generalized plane strain, which is at a node.
+   pure real(dp) function largest_along_z(mesh, e, section, displacement) result(largest)
+      type(mesh_type), intent(in) :: mesh
+      integer, intent(in) :: e
+      type(section_type), intent(in) :: section
+      real(dp), intent(in) :: displacement(:, :)
+      integer :: q
+
+      largest = 0.0_dp
+      do q = 1, element_node_count(mesh%element_kind(e))
+         largest = max(largest, abs(dot_product(strain_along_z(mesh%coordinates(:, &
+            mesh%element_nodes(q, e)) - mesh%coordinates(:, section%reference(1)), &
+            section%thickness), [displacement(:, section%reference(1)), &
+            displacement(1, section%reference(2))])))
+      end do
+   end function largest_along_z
 
    pure function element_deformation(mesh, e, displacement, rule) result(largest)
       type(mesh_type), intent(in) :: mesh

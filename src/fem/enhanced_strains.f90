@@ -25,7 +25,7 @@ contains
 
    !> Adds to B the strains that unit displacements enhance: B - G (G^T E G)^-1 G^T E B.
    pure subroutine enhance_strains(coordinates, points, is_axisymmetric, e, volumes, b)
-      real(dp), intent(in) :: coordinates(:, :)   !! (2, 4) corners [length]
+      real(dp), intent(in) :: coordinates(:, :)   !! (2, 4 or more) corners first [length]
       real(dp), intent(in) :: points(:, :)        !! (2, 4) xi, eta of the integration points
       logical, intent(in) :: is_axisymmetric      !! whether x is a radius
       real(dp), intent(in) :: e(:, :, :)          !! (4, 4, points, or 1 for all) [stress]

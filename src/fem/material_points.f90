@@ -4,14 +4,15 @@
 !> integration points; the operators are their tangents (stiffness_matrix, thermal_matrix).
 module material_points
    use element_integrals, only: area_factor
-   use element_kinds, only: axisymmetric, element_node_count, plane_stress, quad4, quad4_enhanced
+   use element_kinds, only: axisymmetric, element_node_count, generalized_strain, plane_stress, &
+      quad4, quad4_enhanced
    use enhanced_strains, only: released_strains
    use kinds, only: dp
    use material_laws, only: law_interval_type, law_points_type, material_law_type
    use materials, only: has_law, heat_content, material_type, orientation_type, section_type
    use mesh, only: mesh_type, nodes_per_element
    use point_gradients, only: add_hoop_strain, find_negative_gradient, find_strains, &
-      set_mean_dilatation
+      set_mean_dilatation, strain_along_z
    use point_materials, only: point_material_type, point_materials_type
    use point_rules, only: most => most_points_of_rule, point_rule_type
    use quadrature, only: point_count
@@ -449,6 +450,8 @@ contains
          call find_strains(self%rules(kind), self%inverse(:, first), u, strain, warmth)
          if (plane == axisymmetric) call add_hoop_strain(self%rules(kind), nodes, &
             mesh%coordinates, displacement, strain(:n, 3))
+         if (plane == generalized_strain) call add_strain_along_z(self, mesh, element, &
+            displacement, strain(:n, 3))
          if (kind == quad4 .and. plane /= plane_stress) call set_mean_dilatation( &
             self%volume(first:first + n - 1), strain)
          i = self%material(element)
@@ -467,6 +470,28 @@ contains
          end if
       end associate
    end subroutine elastic_stress
+
+   !> Adds eps_zz of a generalized plane strain.
+   pure subroutine add_strain_along_z(self, mesh, element, displacement, strain)
+      class(material_points_type), intent(in) :: self
+      type(mesh_type), intent(in) :: mesh
+      integer, intent(in) :: element
+      real(dp), intent(in) :: displacement(:, :)
+      real(dp), intent(inout) :: strain(:)           ! (points)
+      real(dp) :: positions(2, size(strain))
+      integer :: g
+
+      positions = self%positions(mesh, element)
+      associate (section => self%sections(mesh%element_section(element)))
+         associate (reference => section%reference)
+            do g = 1, size(strain)
+               strain(g) = strain(g) + dot_product(strain_along_z(positions(:, g) - &
+                  mesh%coordinates(:, reference(1)), section%thickness), &
+                  [displacement(:, reference(1)), displacement(1, reference(2))])
+            end do
+         end associate
+      end associate
+   end subroutine add_strain_along_z
 
    pure subroutine add_initial_stress(mesh, element, n, values)
       type(mesh_type), intent(in) :: mesh
@@ -573,13 +598,14 @@ contains
    end subroutine add_contents
 
    !> Nodal forces that stresses of an element balance: the integral of B^T sigma, B as in
-   !> element_elasticity, but without enhanced strains, on which stresses do no work.
+   !> element_elasticity, but without enhanced strains, on which stresses do no work. Those of the
+   !> section's reference nodes are behind those of the element's.
    pure function nodal_forces(self, mesh, element, stress) result(forces)
       class(material_points_type), intent(in) :: self   !! points of integration_rules
       type(mesh_type), intent(in) :: mesh
       integer, intent(in) :: element                 !! which element
       real(dp), intent(in) :: stress(most, 4)        !! its points first; xx, yy, zz, xy [stress]
-      real(dp) :: forces(2, nodes_per_element)       !! x, y of its nodes [force]
+      real(dp) :: forces(2, nodes_per_element + 2)   !! x, y of its nodes [force]
       real(dp) :: s(most, 4), t(most, 2, 2), hoop(most)
       integer :: g, q
 
@@ -601,6 +627,8 @@ contains
             forces(1, q) = sum_along(rule, q, t(:, :, 1))
             forces(2, q) = sum_along(rule, q, t(:, :, 2))
          end do
+         if (plane == generalized_strain) forces(:, nodes_per_element + 1:) = &
+            forces_along_z(self, mesh, element, s(:rule%count, 3))
          if (plane /= axisymmetric) return
          do g = 1, rule%count
             hoop(g) = s(g, 3)/dot_product(rule%shape(g, :rule%nodes), mesh%coordinates(1, &
@@ -612,6 +640,27 @@ contains
          end do
       end associate
    end function nodal_forces
+
+   !> Forces on the degrees of freedom of the strain along z that stresses of an element balance.
+   pure function forces_along_z(self, mesh, element, stress) result(forces)
+      class(material_points_type), intent(in) :: self
+      type(mesh_type), intent(in) :: mesh
+      integer, intent(in) :: element
+      real(dp), intent(in) :: stress(:)              ! (points) zz, times their volume
+      real(dp) :: forces(2, 2)                       ! of the reference nodes
+      real(dp) :: positions(2, size(stress)), sums(3)
+      integer :: g
+
+      positions = self%positions(mesh, element)
+      sums = 0.0_dp
+      associate (section => self%sections(mesh%element_section(element)))
+         do g = 1, size(stress)
+            sums = sums + stress(g)*strain_along_z(positions(:, g) - &
+               mesh%coordinates(:, section%reference(1)), section%thickness)
+         end do
+      end associate
+      forces = reshape([sums, 0.0_dp], [2, 2])
+   end function forces_along_z
 
    !> Heat that fluxes of an element take from its nodes: minus the integral of grad psi q.
    pure function nodal_heat(self, mesh, element, flux) result(heat)

@@ -7,7 +7,8 @@ module point_gradients
    use point_rules, only: most => most_points_of_rule, point_rule_type
    implicit none
    private
-   public :: add_hoop_strain, find_negative_gradient, find_strains, set_mean_dilatation
+   public :: add_hoop_strain, find_negative_gradient, find_strains, set_mean_dilatation, &
+      strain_along_z
 
 contains
 
@@ -57,6 +58,17 @@ contains
          end do
       end associate
    end subroutine add_hoop_strain
+
+   !> eps_zz of a generalized plane strain per unit of the change of the thickness at the reference
+   !> node and of the turns of a face about x and y (Abaqus Theory Guide, Generalized plane strain
+   !> elements).
+   pure function strain_along_z(arm, thickness) result(strain)
+      real(dp), intent(in) :: arm(2)               !! from the reference node [length]
+      real(dp), intent(in) :: thickness            !! [length]
+      real(dp) :: strain(3)                        !! [1/length], [-], [-]
+
+      strain = [1.0_dp, arm(2), -arm(1)]/thickness
+   end function strain_along_z
 
    !> B-bar, as in element_elasticity; the points are those of its integration.
    pure subroutine set_mean_dilatation(volume, strain)

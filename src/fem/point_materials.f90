@@ -1,7 +1,7 @@
 !> Materials at given points of all elements: one for all points that share it, or one for each
 !> point where the axes turn or properties follow the temperature.
 module point_materials
-   use element_kinds, only: axisymmetric, element_node_count, kind_count, plane_strain
+   use element_kinds, only: element_node_count, generalized_strain, kind_count, plane_strain
    use kinds, only: dp
    use materials, only: follows_temperature, has_law, material_axes, material_type, &
       of_conductivity, of_elasticity, of_expansion, orientation_type, properties_type, &
@@ -54,7 +54,7 @@ contains
       type(material_type), intent(in) :: materials(:)
       type(orientation_type), intent(in) :: orientations(:) !! axes of the materials
       type(point_rule_type), intent(in) :: rules(:)         !! (kinds) points of each kind
-      integer :: shared(size(sections), axisymmetric), e, g, n, pass
+      integer :: shared(size(sections), generalized_strain), e, g, n, pass
       real(dp) :: axes(2, 2), position(2)
 
       self%rules = rules

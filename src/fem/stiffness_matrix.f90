@@ -3,13 +3,13 @@
 module stiffness_matrix
    use element_assembly, only: element_assembly_type
    use element_elasticity, only: element_stiffness, element_stress_force, element_thermal_load
-   use element_kinds, only: element_node_count
+   use element_kinds, only: element_node_count, generalized_strain
    use kinds, only: dp
-   use materials, only: section_type
+   use materials, only: section_type, strain_freedoms
    use mesh, only: mesh_type
    use point_materials, only: point_materials_type
    use quadrature, only: most_points, point_count
-   use sparse_matrix, only: sparse_matrix_type
+   use sparse_matrix, only: linear_combination, sparse_matrix_type, triplet_list_type
    implicit none
    private
    public :: assemble_stiffness, assemble_thermal_load, assemble_initial_force
@@ -23,10 +23,14 @@ contains
       class(point_materials_type), intent(in) :: points      !! at those of integration_rules
       type(sparse_matrix_type) :: stiffness                  !! (2 nodes, 2 nodes) [stress length]
       type(element_assembly_type) :: assembly
+      type(triplet_list_type) :: along_z
+      real(dp), allocatable :: k(:, :)
+      integer, allocatable :: others(:), own(:)    ! degrees of freedom
       real(dp) :: e(4, 4, most_points)
       integer :: element, g, n
 
       call assembly%begin(mesh, 2, 2)
+      call along_z%reserve(entries_along_z(mesh))
       do element = 1, size(mesh%element_number)
          associate (kind => mesh%element_kind(element), plane => mesh%element_plane(element), &
             section => sections(mesh%element_section(element)), &
@@ -35,12 +39,44 @@ contains
             do g = 1, n
                e(:, :, g) = points%materials(points%at_point(element, g))%elasticity
             end do
+            if (plane == generalized_strain) then
+               k = element_stiffness(kind, plane, mesh%coordinates(:, [nodes, &
+                  section%reference(1)]), e(:, :, :n), section%thickness)
+               n = 2*size(nodes)
+               call assembly%add(nodes, k(:n, :n))
+               own = displacements_of(nodes)
+               others = strain_freedoms([section])
+               call along_z%add_block(own, others, k(:n, n + 1:))
+               call along_z%add_block(others, own, k(n + 1:, :n))
+               call along_z%add_block(others, others, k(n + 1:, n + 1:))
+               cycle
+            end if
             call assembly%add(nodes, element_stiffness(kind, plane, mesh%coordinates(:, nodes), &
                e(:, :, :n), section%thickness))
          end associate
       end do
       stiffness = assembly%matrix
+      if (along_z%length > 0) stiffness = linear_combination(1.0_dp, stiffness, 1.0_dp, &
+         along_z%compress(stiffness%row_count, stiffness%column_count))
    end function assemble_stiffness
+
+   !> Entries of elements in generalized plane strain between their strain along z and other degrees
+   !> of freedom: room for those of the stiffness, which has more than the thermal load.
+   pure integer function entries_along_z(mesh) result(entries)
+      type(mesh_type), intent(in) :: mesh
+
+      entries = sum(12*element_node_count(mesh%element_kind) + 9, &
+         mask=mesh%element_plane == generalized_strain)
+   end function entries_along_z
+
+   !> Degrees of freedom of nodes.
+   pure function displacements_of(nodes) result(dofs)
+      integer, intent(in) :: nodes(:)
+      integer :: dofs(2*size(nodes))
+      integer :: i
+
+      dofs = [(2*nodes(i) - 1, 2*nodes(i), i=1, size(nodes))]
+   end function displacements_of
 
    !> Nodal forces per unit nodal temperature over the natural state, the right-hand side of (1.1).
    pure function assemble_thermal_load(mesh, sections, points) result(load)
@@ -49,10 +85,13 @@ contains
       class(point_materials_type), intent(in) :: points      !! at those of integration_rules
       type(sparse_matrix_type) :: load                       !! (2 nodes, nodes)
       type(element_assembly_type) :: assembly
+      type(triplet_list_type) :: along_z
+      real(dp), allocatable :: block(:, :)
       real(dp) :: beta(4, most_points), e(4, 4, most_points)
       integer :: element, g, i, n
 
       call assembly%begin(mesh, 2, 1)
+      call along_z%reserve(entries_along_z(mesh))
       do element = 1, size(mesh%element_number)
          associate (kind => mesh%element_kind(element), plane => mesh%element_plane(element), &
             section => sections(mesh%element_section(element)), &
@@ -63,11 +102,21 @@ contains
                e(:, :, g) = points%materials(i)%elasticity
                beta(:, g) = points%materials(i)%thermal_modulus
             end do
+            if (plane == generalized_strain) then
+               block = element_thermal_load(kind, plane, mesh%coordinates(:, [nodes, &
+                  section%reference(1)]), e(:, :, :n), beta(:, :n), section%thickness)
+               call assembly%add(nodes, block(:2*size(nodes), :))
+               call along_z%add_block(strain_freedoms([section]), nodes, block(2*size(nodes) + 1:, &
+                  :))
+               cycle
+            end if
             call assembly%add(nodes, element_thermal_load(kind, plane, &
                mesh%coordinates(:, nodes), e(:, :, :n), beta(:, :n), section%thickness))
          end associate
       end do
       load = assembly%matrix
+      if (along_z%length > 0) load = linear_combination(1.0_dp, load, 1.0_dp, &
+         along_z%compress(load%row_count, load%column_count))
    end function assemble_thermal_load
 
    !> Nodal forces of the initial stresses.
@@ -75,8 +124,8 @@ contains
       type(mesh_type), intent(in) :: mesh                !! with initial stresses
       type(section_type), intent(in) :: sections(:)
       real(dp) :: force(2*size(mesh%node_number))        !! (2 nodes) [force]
-      integer, allocatable :: dofs(:)
-      integer :: element, i
+      integer, allocatable :: around(:), dofs(:)
+      integer :: element
 
       force = 0.0_dp
       do element = 1, size(mesh%element_number)
@@ -84,9 +133,14 @@ contains
          associate (kind => mesh%element_kind(element), plane => mesh%element_plane(element), &
             section => sections(mesh%element_section(element)), &
             nodes => mesh%element_nodes(:element_node_count(mesh%element_kind(element)), element))
-            dofs = [(2*nodes(i) - 1, 2*nodes(i), i=1, size(nodes))]
+            dofs = displacements_of(nodes)
+            around = nodes
+            if (plane == generalized_strain) then
+               dofs = [dofs, strain_freedoms([section])]
+               around = [nodes, section%reference(1)]
+            end if
             force(dofs) = force(dofs) + element_stress_force(kind, plane, &
-               mesh%coordinates(:, nodes), mesh%initial_stress(:, element), section%thickness)
+               mesh%coordinates(:, around), mesh%initial_stress(:, element), section%thickness)
          end associate
       end do
    end function assemble_initial_force

@@ -17,6 +17,9 @@ module linear_solver
    type, abstract :: linear_solver_type
       integer :: order = 0               !! unknowns
       integer :: tail = 0                !! tail unknowns, the last ones
+      !> Leading unknowns, the last ones, that are eliminated behind all others: many are joined to
+      !> them. To be set before the analysis
+      integer :: joined = 0
       integer, allocatable :: row_start(:), column(:)   !! pattern of the lower triangle, by rows
       integer(long) :: full_flops = 0    !! operations of a factorisation of the leading block
       integer(long) :: factor_bytes = 0  !! memory of the factors [byte]

@@ -64,10 +64,10 @@ contains
       self%row_start = lower%row_start
       self%column = lower%column
       if (.not. allocated(rank)) then
-         group = alike_unknowns(lower, self%order - tail)
+         group = alike_unknowns(lower, self%order - tail - self%joined)
          call nested_dissection(adjacency(lower, group), position, error)
          if (allocated(error)) return
-         rank = position(group)
+         rank = [position(group), spread(size(position) + 1, 1, self%joined)]
       end if
       call set_positions(self%mumps, lower)
       call analyse_positions(self, rank, error)

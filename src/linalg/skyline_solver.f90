@@ -48,9 +48,9 @@ contains
       self%row_start = lower%row_start
       self%column = lower%column
       if (.not. allocated(rank)) then
-         group = alike_unknowns(lower, leading)
+         group = alike_unknowns(lower, leading - self%joined)
          position = profile_order(adjacency(lower, group))
-         rank = position(group)
+         rank = [position(group), spread(size(position) + 1, 1, self%joined)]
       end if
       self%position = positions_by_rank(rank, self%order)
       first_row = min(first_rows(lower, self%position), leading + 1)

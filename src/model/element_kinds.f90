@@ -5,7 +5,7 @@ module element_kinds
    public :: quad8, quad8_reduced, quad4, triangle6, triangle3, quad4_enhanced, kind_count
    public :: element_node_count, element_corner_count, side_node_count, side_nodes
    public :: linear_kind
-   public :: plane_strain, plane_stress, axisymmetric
+   public :: plane_strain, plane_stress, axisymmetric, generalized_strain
 
    integer, parameter :: quad8 = 1           !! eight nodes, 3 x 3 points
    integer, parameter :: quad8_reduced = 2   !! eight nodes, 2 x 2 points
@@ -18,6 +18,7 @@ module element_kinds
    integer, parameter :: plane_strain = 1    !! eps_zz = 0
    integer, parameter :: plane_stress = 2    !! sigma_zz = 0
    integer, parameter :: axisymmetric = 3    !! x is the radius, y the axis
+   integer, parameter :: generalized_strain = 4   !! eps_zz is linear in x and y
 
    !> Nodes of an element by its kind: corners anticlockwise, then the midside nodes of sides 1, 2,
    !> ...

@@ -12,7 +12,7 @@ module materials
    public :: material_type, properties_type, section_type, property_type, orientation_type
    public :: material_axes, strain_rotation, heat_capacity, least_heat_capacity
    public :: set_property, elasticity_of, isotropic, engineering, orthotropic, anisotropic
-   public :: follows_temperature, has_law, varies
+   public :: follows_temperature, has_law, in_plane, reference_nodes, strain_freedoms, varies
    public :: thermal_strain, heat_content, heat_capacity_at, expansion_heat
    public :: property_keywords, of_elasticity, of_expansion, of_conductivity, of_density, &
       of_specific_heat
@@ -82,9 +82,51 @@ module materials
       integer :: material = 0           !! index into model%materials
       integer :: orientation = 0        !! index into model%orientations, 0 for x and y
       real(dp) :: thickness = 1.0_dp    !! thickness [length]
+      !> Of generalized plane strain: index of the node whose degrees of freedom are the change of
+      !> the thickness at it and the turn of a face about x, and of that whose first is the turn
+      !> about y; else 0, 0
+      integer :: reference(2) = 0
    end type section_type
 
 contains
+
+   !> Degrees of freedom of the strains along z of sections, each once.
+   pure function strain_freedoms(sections) result(dofs)
+      type(section_type), intent(in) :: sections(:)
+      integer, allocatable :: dofs(:)                   !! (3 per reference node)
+      integer :: i
+
+      dofs = [integer ::]
+      do i = 1, size(sections)
+         associate (own => sections(i)%reference)
+            if (own(1) == 0 .or. any(sections(:i - 1)%reference(1) == own(1))) cycle
+            dofs = [dofs, 2*own(1) - 1, 2*own(1), 2*own(2) - 1]
+         end associate
+      end do
+   end function strain_freedoms
+
+   !> Reference nodes of sections, each once.
+   pure function reference_nodes(sections) result(nodes)
+      type(section_type), intent(in) :: sections(:)
+      integer, allocatable :: nodes(:)
+
+      associate (dofs => strain_freedoms(sections))
+         nodes = (dofs(1::3) + 1)/2
+      end associate
+   end function reference_nodes
+
+   !> Which nodes have displacements in the plane and a temperature: not those of strains along z.
+   pure function in_plane(sections, nodes) result(are)
+      type(section_type), intent(in) :: sections(:)
+      integer, intent(in) :: nodes                      !! their number
+      logical :: are(nodes)
+      integer :: i
+
+      are = .true.
+      do i = 1, size(sections)
+         if (sections(i)%reference(1) > 0) are(sections(i)%reference) = .false.
+      end do
+   end function in_plane
 
    !> rho c_p, 0 of a material without one.
    elemental real(dp) function heat_capacity(material)

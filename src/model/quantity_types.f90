@@ -7,10 +7,11 @@ module quantity_types
    private
    public :: quantity_type, find_quantity
    public :: of_history, of_bodies, of_passes, of_interface, of_contact_points, of_nodes, &
-      of_points, of_elements, of_sections
+      of_points, of_elements, of_sections, of_references
    public :: needs_nothing, needs_temperature, needs_heat, needs_mechanics, needs_coupling
-   public :: needs_storage, needs_dilatation, needs_friction_heat, needs_wear, needs_stability, needs_branch, &
-      needs_sections, needs_plasticity, needs_creep, needs_laws, last_need
+   public :: needs_storage, needs_dilatation, needs_friction_heat, needs_wear, needs_stability
+   public :: needs_branch, needs_sections, needs_plasticity, needs_creep, needs_laws, &
+      needs_references, last_need
 
    integer, parameter :: name_length = 25
 
@@ -24,6 +25,7 @@ module quantity_types
    integer, parameter :: of_points = 7      !! an increment and point: /VTKHDF/PointData
    integer, parameter :: of_elements = 8    !! an increment and element: /VTKHDF/CellData
    integer, parameter :: of_sections = 9    !! an increment and pre-tension section: /history
+   integer, parameter :: of_references = 10 !! an increment and REF NODE of a section: /history
 
    ! Fields that a step must solve for a quantity to have a value; a deck none of whose steps does
    ! so has no dataset of it.
@@ -41,7 +43,8 @@ module quantity_types
    integer, parameter :: needs_plasticity = 11   !! mechanics and *PLASTIC
    integer, parameter :: needs_creep = 12        !! mechanics and *CREEP
    integer, parameter :: needs_laws = 13         !! one of both
-   integer, parameter :: needs_wear = 14         !! mechanics and *WEAR
+   integer, parameter :: needs_references = 14   !! mechanics and generalized plane strain
+   integer, parameter :: needs_wear = 15         !! mechanics and *WEAR
    integer, parameter :: last_need = needs_wear
 
    type :: quantity_type

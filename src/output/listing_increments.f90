@@ -188,6 +188,12 @@ contains
          if (size(record%pre_tension) > 0) call page%line('   pre-tension'// &
             in_columns(record%pre_tension, 14, 6))
       end if
+      if (allocated(record%along_z)) then
+         do i = 1, size(record%along_z, 2)
+            call page%line('   along z: U3, UR1, UR2   '//in_columns(record%along_z(:3, i), 14, 6))
+            call page%line('            RF3, RM1, RM2  '//in_columns(record%along_z(4:, i), 14, 6))
+         end do
+      end if
       if (stability_words(record) /= '') call page%wrapped('   ', 'stability: '// &
          stability_words(record))
       associate (work => record%work)

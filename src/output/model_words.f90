@@ -5,7 +5,7 @@ module model_words
    use contact_definitions, only: pairing_by_faces, pairing_name, pairing_nodes
    use contact_points, only: contact_points_type
    use kinds, only: dp
-   use element_kinds, only: axisymmetric, plane_strain, plane_stress
+   use element_kinds, only: axisymmetric, generalized_strain, plane_strain, plane_stress
    use friction_laws, only: friction_heat_type, friction_law_type, rough_coefficient, unlimited
    use materials, only: follows_temperature, material_type, of_expansion, thermal_strain
    use model, only: model_type
@@ -35,7 +35,7 @@ contains
       allocate (lines(0))
       do i = 1, size(model%sections)
          associate (section => model%sections(i), mesh => model%mesh)
-            do plane = plane_strain, axisymmetric
+            do plane = plane_strain, generalized_strain
                elements = count(mesh%element_section == i .and. mesh%element_plane == plane)
                if (elements == 0) cycle
                select case (plane)
@@ -43,6 +43,9 @@ contains
                   words = 'axisymmetric, full circumference'
                case (plane_stress)
                   words = 'plane stress, thickness '//to_text(section%thickness)
+               case (generalized_strain)
+                  words = 'generalized plane strain of node '//to_text(mesh%node_number( &
+                     section%reference(1)))//', thickness '//to_text(section%thickness)
                case default
                   words = 'plane strain, thickness '//to_text(section%thickness)
                end select

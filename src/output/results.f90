@@ -15,7 +15,7 @@ module results
    use field_quantities, only: maxima
    use file_calls, only: identity_of, remove_file, rename_file, try_file
    use growing_datasets, only: bytes_in, flush_sets
-   use materials, only: of_expansion
+   use materials, only: of_expansion, reference_nodes
    use increment_quantities, only: history_estimated
    use result_tables, only: result_table_type, with_uncertainty, write_geometry
    use equations, only: section_nodes
@@ -27,7 +27,8 @@ module results
    use quantity_types, only: needs_coupling, needs_dilatation, needs_friction_heat, needs_wear, &
       needs_branch, needs_heat, needs_mechanics, needs_nothing, needs_sections, needs_stability, &
       needs_storage, needs_temperature, of_bodies, of_contact_points, of_history, of_interface, &
-      of_passes, of_sections, quantity_type, last_need, needs_creep, needs_plasticity, needs_laws
+      of_passes, of_references, of_sections, quantity_type, last_need, needs_creep, &
+      needs_plasticity, needs_laws, needs_references
    use records, only: increment_record_type
    use reported_quantities, only: datasets, geometry
    use accuracy_lines, only: write_accuracy
@@ -141,7 +142,8 @@ contains
       integer, intent(in) :: element_points(:, :)         !! (8, elements) points, like the nodes
       type(string_type), intent(in) :: cards(:)           !! card images as read
       type(error_type), allocatable, intent(out) :: error !! what went wrong
-      type(quantity_type), allocatable :: of_cuts(:), of_history_alone(:), of_stability(:)
+      type(quantity_type), allocatable :: along_z(:), of_cuts(:), of_history_alone(:), &
+         of_stability(:)
       logical :: has(0:last_need)
       integer :: bodies, i, expected, n
 
@@ -169,7 +171,9 @@ contains
          call tables(stability)%start('/stability', of_stability, 0, expected)
          of_cuts = datasets(of_sections, has)
          of_cuts%values = size(section_nodes(model%couplings))
-         call tables(history)%start('/history', [of_history_alone, of_cuts, &
+         along_z = datasets(of_references, has)
+         along_z%values = size(reference_nodes(model%sections))
+         call tables(history)%start('/history', [of_history_alone, of_cuts, along_z, &
             datasets(of_bodies, has)], model%mesh%body_count, expected)
          call tables(convergence)%start('/convergence', datasets(of_passes, has), 0, 8*expected)
          do i = 1, n
@@ -360,6 +364,7 @@ contains
          has(needs_stability) = any(model%steps%stability_frequency > 0)
          has(needs_branch) = any(model%steps%continuation%is_on)
          has(needs_sections) = has(needs_mechanics) .and. size(section_nodes(model%couplings)) > 0
+         has(needs_references) = has(needs_mechanics) .and. any(model%sections%reference(1) > 0)
          has(needs_plasticity) = has(needs_mechanics) .and. any(model%materials%law%strains(1) > 0)
          has(needs_creep) = has(needs_mechanics) .and. any(model%materials%law%strains(2) > 0)
          has(needs_laws) = has(needs_plasticity) .or. has(needs_creep)

@@ -87,7 +87,7 @@ contains
             self%smallest_gap(i) = min(self%smallest_gap(i), minval(record%contacts(i)%gap))
          end do
          if (.not. allocated(fields%stress)) return
-         call largest_deformation(model%mesh, fields%displacement, largest, element)
+         call largest_deformation(model%mesh, model%sections, fields%displacement, largest, element)
          where (largest > self%largest)
             self%largest = largest
             self%element = element

@@ -10,6 +10,7 @@ module summary
    use increment_quantities, only: stability_words
    use field_quantities, only: maxima
    use kinds, only: dp
+   use materials, only: in_plane
    use mesh, only: mesh_type
    use model, only: model_type
    use model_words, only: has_many
@@ -77,6 +78,7 @@ contains
       type(model_type), intent(in) :: model
       type(contact_points_type), intent(in) :: interfaces(:)
       type(increment_record_type), intent(in) :: record
+      logical :: counts(size(record%fields%temperature))
       integer :: i
 
       if (.not. allocated(self%steps)) allocate (self%steps(0))
@@ -106,9 +108,11 @@ contains
       if (allocated(self%heat)) deallocate (self%heat)
       if (allocated(self%displacement)) deallocate (self%displacement)
       associate (fields => record%fields)
-         if (allocated(fields%reaction_heat)) self%heat = [minval(fields%temperature), &
-            maxval(fields%temperature), record%heat_in, record%heat_out]
-         if (allocated(fields%stress)) self%displacement = maxval(norm2(fields%displacement, dim=1))
+         counts = in_plane(model%sections, size(counts))
+         if (allocated(fields%reaction_heat)) self%heat = [minval(fields%temperature, &
+            mask=counts), maxval(fields%temperature, mask=counts), record%heat_in, record%heat_out]
+         if (allocated(fields%stress)) self%displacement = maxval(norm2(fields%displacement, &
+            dim=1), mask=counts)
       end associate
    end subroutine take
 

@@ -5,11 +5,13 @@ module checked_values
    use contact_quantities, only: contact_values, geometry_values
    use equations, only: section_nodes
    use field_quantities, only: point_values
-   use increment_quantities, only: history_value
+   use increment_quantities, only: history_value, part_values
    use kinds, only: dp
+   use materials, only: reference_nodes
    use mesh, only: mesh_type
    use model, only: model_type, verify_type
-   use quantity_types, only: find_quantity, of_history, of_nodes, of_sections, quantity_type
+   use quantity_types, only: find_quantity, of_history, of_nodes, of_references, of_sections, &
+      quantity_type
    use records, only: contact_record_type, increment_record_type
    use reported_quantities, only: verifiable
    use text, only: read_integer, read_real, to_upper
@@ -27,7 +29,7 @@ contains
       quantity = verifiable(find_quantity(verifiable, check%quantity))
       is_estimable = .not. (quantity%is_integer .or. quantity%is_geometry .or. &
          any(quantity%unit == [character(4) :: '-', 'time', 'load']) .and. &
-         quantity%kind /= of_nodes)
+         all(quantity%kind /= [of_nodes, of_references]))
    end function is_estimable
 
    !> The value that is farthest from what a check expects; NaN where one is.
@@ -51,6 +53,7 @@ contains
       character(:), allocatable, intent(out) :: reason     !! why there are none; else empty
       type(quantity_type) :: quantity
       character(:), allocatable :: name
+      integer, allocatable :: nodes(:)
       integer :: at, i
       logical :: is_extreme
 
@@ -71,12 +74,14 @@ contains
             ! Nodes without elements, such as mesh generators leave, have nothing but zeros.
             values = pack(values, model%mesh%node_body(point_node) > 0)
          end if
-      case (of_sections)
-         allocate (values(0))
-         if (allocated(record%pre_tension)) values = record%pre_tension
+      case (of_sections, of_references)
+         values = part_values(quantity, record)
          if (size(values) == 0) reason = 'this step has no '//check%quantity
-         if (size(values) > 0 .and. .not. is_extreme) call select_points(check%where, model%mesh, &
-            section_nodes(model%couplings), values, reason)
+         if (size(values) > 0 .and. .not. is_extreme) then
+            if (quantity%kind == of_sections) nodes = section_nodes(model%couplings)
+            if (quantity%kind == of_references) nodes = reference_nodes(model%sections)
+            call select_points(check%where, model%mesh, nodes, values, reason)
+         end if
       case default
          allocate (values(0))
          at = index(check%where//'@', '@')

@@ -4,8 +4,8 @@ module increment_quantities
    use kinds, only: dp
    use quantity_types, only: needs_branch, needs_coupling, needs_creep, needs_dilatation, &
       needs_friction_heat, needs_heat, needs_laws, needs_mechanics, needs_plasticity, &
-      needs_sections, needs_stability, needs_storage, of_bodies, of_elements, of_history, &
-      of_passes, of_sections, quantity_type
+      needs_references, needs_sections, needs_stability, needs_storage, of_bodies, of_elements, &
+      of_history, of_passes, of_references, of_sections, quantity_type
    use field_recovery, only: error_record_type
    use records, only: increment_record_type, stability_record_type
    use solution_report, only: iteration_record_type
@@ -81,6 +81,18 @@ module increment_quantities
       quantity_type('pre_tension', of_sections, 'stress length^2', needs_sections, &
       label='pre-tension', description='force across a pre-tension section, positive in '// &
       'tension; a column each where there are several'), &
+      quantity_type('U3', of_references, 'length', needs_references, description= &
+      'change of the thickness at the reference node; a column each where there are several'), &
+      quantity_type('UR1', of_references, '-', needs_references, &
+      description='turn about x of one face of the body to the other'), &
+      quantity_type('UR2', of_references, '-', needs_references, &
+      description='turn about y of one face of the body to the other'), &
+      quantity_type('RF3', of_references, 'stress length^2', needs_references, &
+      description='force along z on the faces, positive in tension'), &
+      quantity_type('RM1', of_references, 'stress length^3', needs_references, &
+      description='moment about x on the faces, at the reference node'), &
+      quantity_type('RM2', of_references, 'stress length^3', needs_references, &
+      description='moment about y on the faces, at the reference node'), &
       quantity_type('stress_error', of_bodies, '-', needs_mechanics, label='stress', &
       description='estimated error of the stress by the mesh, relative; one column per body'), &
       quantity_type('heat_flux_error', of_bodies, '-', needs_heat, label='heat flux', &
@@ -235,7 +247,7 @@ contains
       if (found%period > 0.0_dp) words = words//', period '//few_digits(found%period, 3)
    end function motion_words
 
-   !> A quantity of the bodies, of the elements or of the pre-tension sections.
+   !> A quantity of the bodies, of the elements, of the pre-tension sections or of reference nodes.
    pure function part_values(quantity, record) result(values)
       type(quantity_type), intent(in) :: quantity          !! one of those kinds
       type(increment_record_type), intent(in) :: record
@@ -253,6 +265,9 @@ contains
       if (quantity%kind == of_elements .and. allocated(error%element)) values = error%element
       if (quantity%kind == of_sections .and. allocated(record%pre_tension)) values = &
          record%pre_tension
+      if (quantity%kind == of_references .and. allocated(record%along_z)) values = &
+         record%along_z(findloc(['U3 ', 'UR1', 'UR2', 'RF3', 'RM1', 'RM2'], quantity%name(:3), &
+         dim=1), :)
    end function part_values
 
    !> A quantity of a pass.

@@ -159,6 +159,9 @@ module records
       real(dp) :: contact_violation = 0.0_dp
       !> (sections) across pre-tension sections; unallocated before mechanics is solved [force]
       real(dp), allocatable :: pre_tension(:)
+      !> (6, reference nodes of sections) degrees of freedom 3 to 5 and the external forces on them;
+      !> unallocated likewise [length], [-], [force], [force length]
+      real(dp), allocatable :: along_z(:, :)
       type(contact_record_type), allocatable :: contacts(:)     !! one an interface
       integer :: cut_backs = 0               !! attempts at it that failed before
       !> Solutions that properties over temperature or the heat of strains asked for; 0 without them

@@ -4,8 +4,8 @@ module reported_quantities
    use contact_quantities, only: contact_table
    use field_quantities, only: field_table
    use increment_quantities, only: increment_table
-   use quantity_types, only: of_contact_points, of_history, of_interface, of_nodes, of_sections, &
-      quantity_type
+   use quantity_types, only: of_contact_points, of_history, of_interface, of_nodes, of_references, &
+      of_sections, quantity_type
    implicit none
    private
    public :: quantities, verifiable, geometry, traded, datasets
@@ -16,7 +16,7 @@ module reported_quantities
    type(quantity_type), parameter :: verifiable(*) = pack(quantities, quantities%is_published &
       .and. (quantities%kind == of_history .or. quantities%kind == of_interface .or. &
       quantities%kind == of_contact_points .or. quantities%kind == of_nodes .or. &
-      quantities%kind == of_sections))
+      quantities%kind == of_sections .or. quantities%kind == of_references))
 
    !> Those of contact points before deformation.
    type(quantity_type), parameter :: geometry(*) = pack(quantities, quantities%is_geometry)

@@ -208,14 +208,14 @@ contains
       type(loads_type), intent(in) :: loads
       type(solution_state_type), intent(in) :: next
       type(increment_record_type), intent(inout) :: record
-      real(dp), allocatable :: internal(:), residual(:)
+      real(dp), allocatable :: even(:), internal(:), residual(:)
       type(friction_law_type) :: friction(size(bodies%points%slave))
       type(scales_type) :: scales
       real(dp) :: dropped, least, positions(2, size(bodies%points%slave)), stiffness
       logical :: along_x
 
       least = least_displacement(model, next%temperature)
-      scales%length = max(maxval(abs(next%displacement)), least, tiny(1.0_dp), &
+      scales%length = max(bodies%largest_displacement(next%displacement), least, tiny(1.0_dp), &
          bodies%equilibrium%contact%least_length/noise)
       if (size(bodies%points%initial_gap) > 0) then
          scales%length = max(scales%length, noise*maxval(abs(bodies%points%initial_gap)))
@@ -228,13 +228,20 @@ contains
       dropped = size(next%contact%force)*bodies%equilibrium%contact%least_force()
       residual = force_residual(internal, next%force_load, bodies%points, next%contact)
       call bodies%mechanical%map%carry_over(residual)
+      even = bodies%evened(residual)
+      ! What bodies have along z balances nothing in the plane.
+      if (allocated(bodies%points%along_z)) then
+         associate (dofs => bodies%points%along_z)
+            internal(dofs) = merge(0.0_dp, even(dofs), loads%displacement%active(dofs))
+         end associate
+      end if
       associate (prescribed => loads%displacement%active)
-         scales%force = max(maxval(abs(residual), mask=prescribed), maxval(abs(next%force_load)), &
-            sum(next%contact%force), noise*stiffness*scales%length, &
-            least*stiffness, dropped/noise, tiny(1.0_dp))
+         scales%force = max(maxval(abs(even), mask=prescribed), &
+            maxval(abs(bodies%evened(next%force_load))), sum(next%contact%force), &
+            noise*stiffness*scales%length, least*stiffness, dropped/noise, tiny(1.0_dp))
          along_x = all(model%mesh%element_plane /= axisymmetric)
          record%force_imbalance = imbalance(internal - bar_forces(bodies, next%displacement, &
-            next%temperature - model%initial_temperature), residual, prescribed, &
+            next%temperature - model%initial_temperature), even, prescribed, &
             model%mesh%node_body, &
             [along_x, .true.], scales%force)
          positions = bodies%points%relative(next%displacement)

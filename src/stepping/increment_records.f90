@@ -77,6 +77,7 @@ contains
                bodies%points%partners, reshape(next%force_load, shape(record%fields%reaction)))
             if (allocated(model%couplings)) record%pre_tension = &
                record%fields%external_force(1, section_nodes(model%couplings))
+            if (allocated(bodies%points%along_z)) call take_along_z(bodies%points%along_z, record)
             if (recovers) call recovery%recover_stress(model, record%fields%displacement, &
                next%stress_temperature - model%initial_temperature, next%history, &
                record%fields%stress, record%stress_error)
@@ -115,6 +116,19 @@ contains
          end if
       end associate
    end subroutine complete_record
+
+   !> Takes what reference nodes have from the fields.
+   pure subroutine take_along_z(dofs, record)
+      integer, intent(in) :: dofs(:)                         !! three a node
+      type(increment_record_type), intent(inout) :: record   !! with displacements and forces
+      real(dp), dimension(2*size(record%fields%displacement, 2)) :: force, displacement
+
+      displacement = [record%fields%displacement]
+      force = [record%fields%external_force]
+      allocate (record%along_z(6, size(dofs)/3))
+      record%along_z(:3, :) = reshape(displacement(dofs), [3, size(dofs)/3])
+      record%along_z(4:, :) = reshape(force(dofs), [3, size(dofs)/3])
+   end subroutine take_along_z
 
    !> Notes zones with more edges than are kept.
    subroutine note_edges(points, states, record)

@@ -17,11 +17,13 @@ module operator_corrections
    use anderson_mixing, only: mixing_type
    use element_kinds, only: element_node_count
    use errors, only: error_type, set_error, status_no_convergence
+   use field_problem, only: largest_of
    use field_quantities, only: von_mises
    use heat_equation, only: heat_equation_type
    use increment_data, only: stage_type
    use kinds, only: dp
-   use materials, only: has_law, varies
+   use materials, only: has_law, section_type, varies
+   use mesh, only: mesh_type, nodes_per_element
    use model, only: model_type
    use material_laws, only: law_points_type
    use material_points, only: elastic_part, material_points_type, point_history_type
@@ -105,8 +107,16 @@ contains
             if (varies(model%materials(model%sections(mesh%element_section(e))% &
                material))) follows(mesh%element_body(e)) = .true.
          end do
+         do e = 1, size(model%sections)
+            call follow_others(mesh, model%sections, follows)
+         end do
          self%elements = pack([(e, e=1, size(mesh%element_body))], follows(mesh%element_body))
          self%follows = follows(mesh%node_body)
+         do e = 1, size(self%elements)
+            associate (own => model%sections(mesh%element_section(self%elements(e)))%reference)
+               if (own(1) > 0) self%follows(own) = .true.
+            end associate
+         end do
       end associate
       if (allocated(initial_force)) self%initial_force = initial_force
       self%corrects = any(follows) .or. any(model%steps%dilates)
@@ -122,6 +132,23 @@ contains
       if (any(model%steps%is_transient)) call self%contents%prepare(model%mesh, model%sections, &
          model%materials, model%orientations, load_rules())
    end subroutine prepare
+
+   !> Bodies that have a strain along z in common follow together.
+   pure subroutine follow_others(mesh, sections, follows)
+      type(mesh_type), intent(in) :: mesh
+      type(section_type), intent(in) :: sections(:)
+      logical, intent(inout) :: follows(0:)            ! bodies, none of them first
+      logical :: along_z(size(mesh%element_body))      ! elements that have it
+      integer :: i
+
+      do i = 1, size(sections)
+         if (sections(i)%reference(1) == 0) cycle
+         along_z = sections(mesh%element_section)%reference(1) == sections(i)%reference(1)
+         if (any(follows(pack(mesh%element_body, along_z)))) then
+            follows(pack(mesh%element_body, along_z)) = .true.
+         end if
+      end do
+   end subroutine follow_others
 
    !> Starts a stage, from the corrections of the last increments where these are of the present
    !> operators.
@@ -419,7 +446,7 @@ contains
       real(dp) :: forces(size(displacement))                 ! (2 nodes) [force]
       real(dp), dimension(2, size(temperature)) :: balance, u
       type(law_points_type) :: points
-      real(dp) :: of_nodes(2, 8), warming(size(temperature))
+      real(dp) :: of_nodes(2, nodes_per_element + 2), warming(size(temperature))
       integer :: i
 
       forces = 0.0_dp
@@ -443,6 +470,10 @@ contains
             of_nodes = self%points%nodal_forces(mesh, e, points%stress)
             self%largest_force = max(self%largest_force, maxval(abs(of_nodes(:, :size(nodes)))))
             balance(:, nodes) = balance(:, nodes) - of_nodes(:, :size(nodes))
+            associate (along_z => model%sections(mesh%element_section(e))%reference)
+               if (along_z(1) > 0) balance(:, along_z) = balance(:, along_z) - &
+                  of_nodes(:, nodes_per_element + 1:)
+            end associate
          end associate
       end do
       forces = merge([balance], forces, [spread(self%follows, 1, 2)])
@@ -531,12 +562,14 @@ contains
             ! Inelastic strains may be far larger than the elastic ones.
             force = max(self%largest_force, least(2))
          else
-            force = max(maxval(abs(self%values(2*n + 1:))), least(2))
-            if (allocated(bodies%mechanical%matrix%value)) force = max(force, &
-               maxval(abs(bodies%mechanical%matrix%multiply(next%displacement))))
+            force = max(maxval(abs(bodies%evened(self%values(2*n + 1:)))), least(2))
+            if (allocated(bodies%mechanical%matrix%value)) force = max(force, maxval(abs( &
+               bodies%evened(bodies%mechanical%matrix%multiply(next%displacement)))))
          end if
          scale(:2*n) = max(heat, tiny(heat))
          scale(2*n + 1:) = max(force, tiny(force))
+         if (allocated(bodies%mechanical%lever)) scale(2*n + bodies%points%along_z) = &
+            scale(2*n + 1)*bodies%mechanical%lever
       end associate
    end function scales_of
 
@@ -551,10 +584,10 @@ contains
       real(dp) :: shift, stored, thermal_load, warmth
 
       warmth = maxval(abs(next%temperature))
-      shift = maxval(abs(next%displacement))
+      shift = bodies%largest_displacement(next%displacement)
       thermal_load = 0.0_dp
       if (allocated(bodies%thermal_load%value)) thermal_load = &
-         maxval(abs(bodies%thermal_load%value))
+         largest_of(bodies%thermal_load, bodies%points%along_z)
       terms(1) = bodies%thermal%largest_entry*warmth
       if (self%stage%stores_heat) then
          stored = max(maxval(abs(self%stage%content)), maxval(bodies%capacity%multiply( &
@@ -566,7 +599,7 @@ contains
       terms(2) = max(bodies%mechanical%largest_entry*shift, thermal_load*max(warmth, &
          maxval(abs(model%initial_temperature)), maxval(abs(model%materials%no_strain))))
       if (allocated(self%initial_force)) terms(2) = max(terms(2), &
-         maxval(abs(self%initial_force)))
+         maxval(abs(bodies%evened(self%initial_force))))
    end function largest_terms
 
 end module operator_corrections

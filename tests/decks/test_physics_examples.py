@@ -62,6 +62,21 @@ def hot_press_fit():
     return found | {("gap", "FIT", "LAST"): fit.response(last, 0)[1]}
 
 
+def free_fit():
+    """Lame with free ends, and the fit in one dimension; on a sector of 10 degrees, 10 thick."""
+    steel, seat, area = (2e5, 0.3, 0.0), 50.0, 50.0 * radians(10.0) * 10.0
+    fit = creeping_fit.Fit(seat, 100.0, 0.05, (steel, steel), (steel, steel), 0.0, (3.125e-14, 5.0))
+    p = lame.press_fit(0.0, seat, 100.0, steel[:2], steel[:2], 0.05, "stress")
+    assert p == pytest.approx(75.0)
+    hub = np.sum(lame.cylinder(seat, seat, 100.0, p))
+    found = {("normal_force", "FIT", "1."): p * area,
+             ("U3", "1001", "1."): 10.0 * 0.3 * 2 * p / 2e5,
+             ("U3", "1002", "1."): -10.0 * 0.3 * hub / 2e5}
+    return found | {("normal_force", "FIT", when): fit.response(strains, 1)[0] * area
+                    for when, strains in zip(("2.", "101.", "1001."),
+                                             fit.course([1.0, 100.0, 1000.0]), strict=True)}
+
+
 def press_fit():
     """Lame in plane stress."""
     hub, rim, radii = (2.1e5, 0.3), (7.0e4, 0.33), (20.0, 40.0, 60.0)

@@ -412,8 +412,10 @@ def test_the_file_has_all_that_the_document_tells(results, tmp_path):
     shutil.copy(EXAMPLES / "press_fit.mesh", tmp_path)
     for ending in "inp", "mesh":
         shutil.copy(EXAMPLES / f"bolted_flange.{ending}", tmp_path)
-    status, said = run(tmp_path / "bolted_flange.inp")
-    assert status == 0, said
+    shutil.copy(EXAMPLES / "free_fit.inp", tmp_path)
+    for name in "bolted_flange", "free_fit":
+        status, said = run(tmp_path / f"{name}.inp")
+        assert status == 0, said
     status, said = run(tmp_path / "press_fit.inp", "--accuracy", "1%")
     assert status == 0, said
     rods = EXAMPLES.parent / "rods"
@@ -428,7 +430,7 @@ def test_the_file_has_all_that_the_document_tells(results, tmp_path):
         assert status == 0, said
     names = set()
     for path in (results / "cylinder.vtkhdf", results / "cylinder.contact.vtkhdf",
-                 *(tmp_path / f"{name}.vtkhdf" for name in ("press_fit", "bolted_flange",
+                 *(tmp_path / f"{name}.vtkhdf" for name in ("press_fit", "bolted_flange", "free_fit",
                                                             "stretched", "rubbed", "branch", "creeping"))):
         with h5py.File(path) as file:
             names |= {name.rpartition("/")[2] for name in every_dataset(file)}

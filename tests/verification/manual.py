@@ -34,7 +34,7 @@ tolerance.
 | [Contact](#contact) | patch test, Hertz, NAFEMS cylinder on block, receding layer, press fit | uniform pressure to rounding; Hertz's pressures to 0.1 % |
 | [Friction](#friction) | Cattaneo and Mindlin, block of Feijoo, Barbosa and Zouain | edges of stick within half a side, displacements to 3 % |
 | [Heat and contact](#heat-and-contact) | walls and a slit, crack closed by heat, gas and radiation, rods, the published cylinder | closed forms of walls and rods to 1e-8; the cylinder on the mesh of the paper to 0.5 % in force and 2.5 % in heat |
-| [Several interfaces, rings and cracks](#several-interfaces-rings-and-cracks) | caliper, three blocks, tubes, gas in a crack | uniform states to rounding; tubes and the crack converge |
+| [Several interfaces, rings and cracks](#several-interfaces-rings-and-cracks) | caliper, three blocks, tubes, gas in a crack; bars, rings and press fits with free ends | uniform states to rounding; tubes, rings and the crack converge; press fits to 0.002 MPa |
 | [Transients](#transients) | NAFEMS T3, walls, slabs, half-spaces and cylinders after a jump, sudden contact, a rod that touches | closed forms with the order 2 of the scheme; the finest increments to 0.01 % of the jump |
 | [Heat of strains](#heat-of-strains) | plate and columns loaded at once, columns that settle, a strip's damping | closed forms of sudden loads to rounding; the others with order 2, whatever the coupling |
 | [Heat of friction](#heat-of-friction) | half-spaces that rub, sliding blocks, sliding bars and half-planes that grow hot, a turning ring | heat is the work of friction to rounding; growth rates to 1 % |

@@ -2,6 +2,8 @@
 
 import h5py
 import numpy as np
+from free_ends import KINDS, STRAIN, bent, free_fit, hot_ring
+from inelastic import step
 from manual import Case, Check, check_short, errors_panel
 from pictures import save, subplots
 from test_physics_contact import LAWS, sheared
@@ -60,6 +62,34 @@ def gas_crack(count):
                          0.02 * part)]
 
 
+def bar(kind):
+    """Return a bar that a force and moments about an excentric node stretch and bend along z."""
+    cards, rows = bent(STRAIN, (0.7, -1.2), kind, True)
+    return cards, [Check(name, name, where, value, tolerance)
+                   for name, where, _, value, tolerance, *_ in rows
+                   if name in ("U3", "UR1", "UR2") or name == "S33"]
+
+
+def free_ring(around):
+    """Return a ring with free ends and a logarithmic temperature."""
+    cards, known = hot_ring(around)
+    part = (32 / around) ** 2
+    return cards, [
+        Check("growth along z", "U3", str(known["U3"][0]), known["U3"][1], 2e-6 * part**2),
+        *(Check(f"axial stress, {place}", "S33", str(known[place][0]), known[place][1], 0.02 * part)
+          for place in ("bore", "outside"))]
+
+
+PRESSURES = {"1.": 75.0, "2.": 54.37554, "101.": 20.47499, "1001.": 11.55326}
+
+
+def creeping_fit(elements):
+    """Return a press fit with free ends before its hub creeps, and after 1, 100 and 1000 h."""
+    cards, area = free_fit(elements, *step("*VISCO", "0.01, 1000."))
+    return cards, [Check(f"force after {float(when) - 1:g} h", "normal_force", "FIT", p * area,
+                         0.002 / p, when=when) for when, p in PRESSURES.items()]
+
+
 def cases():
     """Return the cases of the theme."""
     return [
@@ -98,6 +128,30 @@ def cases():
              the tips count, falling with h^2: the order of displacements about a tip with quarter
              points.""",
              [32, 64, 128], gas_crack, lambda n: f"{n} around", short=1),
+        Case("A bar that bends along z",
+             """A force and moments about a node aside of a rectangle in generalized plane strain, whose
+             section deforms freely.""",
+             "N = E A e and M = E I kappa about both axes; uniaxial stress.",
+             "1e-9: rounding. Displacements are quadratic.",
+             KINDS, bar, named="element", short=4),
+        Case("A hot ring with free ends",
+             """A whole ring of radii 50 and 100 in generalized plane strain, CPEG8R, its temperature
+             linear in log r, about a reference node aside of its axis. Nothing holds it along z.""",
+             """Timoshenko and Goodier, section 151: it grows by its mean temperature, and the axial
+             stress is that of plane strain less its mean.""",
+             """2e-6 of the growth with 32 elements around, which falls with h^4 as sides that leave the
+             circle do, 2 % of the stresses at nodes, falling with h^2.""",
+             [16, 32, 64], free_ring, lambda n: f"{n} around", short=2,
+             order={"growth along z": 3.5, "axial stress, bore": 1.8, "axial stress, outside": 1.8}),
+        Case("A press fit with free ends that creeps",
+             """A sector of a solid shaft 50 in a hub 50/100, 0.05 larger than its bore, one element
+             around, each with a reference node of its own. E = 200 GPa, nu = 0.3; the hub creeps by
+             3.125e-14 q^5/h. In plane strain the pressure would be 82.418. Forces are 13.09 times the
+             pressures in MPa, 75, 54.376, 20.475 and 11.553.""",
+             "Lame with free ends; after that, tests/reference/creeping_fit.py, in one dimension.",
+             """0.002 MPa, of a pressure of 11.553 in the end: sides that leave the circle, and increments
+             of the default accuracy.""",
+             [5, 10, 20], creeping_fit, lambda n: f"{n} through the hub", short=1, kind="EXTERNAL"),
     ]
 
 

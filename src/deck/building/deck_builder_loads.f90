@@ -7,6 +7,7 @@ module deck_builder_loads
    use deck_context, only: deck_type
    use kinds, only: dp
    use load_requests, only: request_type
+   use materials, only: reference_nodes
    use model, only: model_type
    use spelling, only: is_slip
    use steps, only: dof_temperature, load_body_force, load_body_heat, load_centrifugal, &
@@ -153,7 +154,7 @@ contains
       real(dp) :: given(3)
       integer, allocatable :: nodes(:)
       integer :: dof
-      logical :: valid
+      logical :: taken, valid
 
       select case (keyword)
       case ('TEMPERATURE')
@@ -173,6 +174,9 @@ contains
       if (keyword /= 'TEMPERATURE') dof = nint(given(2))
       request%value = given(merge(2, 3, keyword == 'TEMPERATURE'))
       request%component = dof
+      taken = .false.
+      if (keyword /= 'TEMPERATURE') call take_along_z(data, dof, request, deck, taken, valid)
+      if (taken) return
       nodes = rotations_of(dof, request, deck%model)
       if (keyword == 'CLOAD') request%component = place_in_plane(request, deck%model, dof)
       if (keyword == 'CLOAD' .and. (dof == dof_rotation .or. size(nodes) > 0)) then
@@ -279,7 +283,10 @@ contains
       type(request_type) :: rotation
       integer, allocatable :: nodes(:)
       integer :: i
+      logical :: taken
 
+      call take_along_z(data, dof, request, deck, taken, valid)
+      if (taken) return
       nodes = rotations_of(dof, request, deck%model)
       if (size(nodes) > 0) then
          rotation = request
@@ -319,6 +326,51 @@ contains
          valid = .false.
       end select
    end subroutine add_support
+
+   !> Takes a request for reference nodes of sections, which have degrees of freedom 3, 4 and 5 in
+   !> generalized plane strain.
+   subroutine take_along_z(data, dof, request, deck, taken, valid)
+      type(data_card_type), intent(in) :: data
+      integer, intent(in) :: dof
+      type(request_type), intent(in) :: request
+      type(deck_type), intent(inout) :: deck
+      logical, intent(out) :: taken                    ! also after an error
+      logical, intent(inout) :: valid
+      type(request_type) :: own
+      integer, allocatable :: members(:)
+      integer :: i, s
+
+      taken = .false.
+      if (all(deck%model%sections%reference(1) == 0)) return
+      members = request%members(deck%mesh%node_sets)
+      associate (sections => deck%model%sections, known => reference_nodes(deck%model%sections))
+         i = findloc([(any(known == members(i)), i=1, size(members))], .true., dim=1)
+         taken = i > 0
+         if (.not. taken) return
+         valid = any(dof == [3, 4, 5])
+         if (.not. valid) then
+            call deck%error(data%place(2), 'degree of freedom '//to_text(dof)//' of node '// &
+               to_text(deck%mesh%node_number(members(i)))//', which is a REF NODE: it has 3, 4 '// &
+               'and 5')
+            return
+         end if
+         own = request
+         own%set = 0
+         own%component = merge(2, 1, dof == 4)
+         do i = 1, size(members)
+            s = findloc(sections%reference(1), members(i), dim=1)
+            valid = s > 0
+            if (.not. valid) then
+               call deck%error(data%place(1), 'REF NODE and other nodes are in one set; name '// &
+                  'them on cards of their own')
+               return
+            end if
+            own%item = sections(s)%reference(merge(2, 1, dof == 5))
+            if (own%kind == 0) call deck%boundaries%add(own)
+            if (own%kind > 0) call deck%loads%add(own)
+         end do
+      end associate
+   end subroutine take_along_z
 
    !> The component of a request for a degree of freedom, as axis_in_plane.
    pure integer function place_in_plane(request, model, dof)

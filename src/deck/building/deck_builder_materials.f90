@@ -4,12 +4,13 @@ module deck_builder_materials
    use card_parameters, only: choice, take_parameter
    use card_values, only: check_ascending, check_unneeded, read_row
    use cards, only: keyword_card_type
+   use deck_builder_equations, only: find_reference
    use deck_builder_inelastic, only: build_inelasticity, complete_law
    use deck_context, only: deck_type
    use deck_source, only: place_type
    use deck_structure, only: cards_of, has_stand_in
    use elasticity, only: couples_out_of_plane, is_positive_definite
-   use element_kinds, only: axisymmetric
+   use element_kinds, only: axisymmetric, generalized_strain
    use element_types, only: truss
    use kinds, only: dp
    use materials, only: anisotropic, elasticity_of, engineering, isotropic, material_type, &
@@ -276,7 +277,7 @@ contains
       type(deck_type), intent(inout) :: deck
       integer, allocatable :: places(:)
       real(dp) :: thickness(1)
-      integer :: n, set
+      integer :: n, set, unnamed
       logical :: valid
 
       places = cards_of(deck%cards, 'SOLID SECTION')
@@ -284,6 +285,7 @@ contains
       deck%sections_sound = &
          .not. (has_stand_in(deck%cards, 'SOLID SECTION') .or. deck%has_lost('element set'))
       valid = .true.
+      unnamed = size(deck%node_height)
       do n = 1, size(places)
          associate (card => deck%cards%keywords(places(n)), section => deck%model%sections(n))
             call deck%need_named(card, 'MATERIAL', 'material', section%material)
@@ -299,6 +301,11 @@ contains
                end associate
             end if
             call give_section(card, n, deck, set)
+            if (card%has('REF NODE')) then
+               unnamed = unnamed + 1
+               call take_reference(card, n, unnamed, deck)
+            end if
+            call check_reference(card, set, deck)
             if (size(card%data) > 0 .or. set == 0) cycle
             if (any(deck%mesh%element_plane(deck%mesh%element_sets(set)%members) /= &
                axisymmetric)) call deck%note('*SOLID SECTION without a thickness: '// &
@@ -306,6 +313,51 @@ contains
          end associate
       end do
    end subroutine build_sections
+
+   !> Gives a section its reference node. Sections may have one in common.
+   subroutine take_reference(card, n, unnamed, deck)
+      type(keyword_card_type), intent(in) :: card
+      integer, intent(in) :: n           ! index of the section
+      integer, intent(in) :: unnamed     ! the node that the builder of nodes left for it
+      type(deck_type), intent(inout) :: deck
+      integer :: node, other
+
+      call find_reference('REF NODE', card, deck, node)
+      if (node == 0) return
+      if (any(deck%mesh%element_nodes == node)) call deck%error(card%place_of('REF NODE'), &
+         'elements have node '//to_text(deck%mesh%node_number(node))//': REF NODE= is a node '// &
+         'of its own')
+      associate (sections => deck%model%sections)
+         other = findloc(sections(:n - 1)%reference(1), node, dim=1)
+         sections(n)%reference = [node, unnamed]
+         if (other > 0) sections(n)%reference = sections(other)%reference
+      end associate
+   end subroutine take_reference
+
+   !> Elements in generalized plane strain need a reference node, others have none.
+   subroutine check_reference(card, set, deck)
+      type(keyword_card_type), intent(in) :: card
+      integer, intent(in) :: set         ! element set of the section, 0 after an error
+      type(deck_type), intent(inout) :: deck
+      character(:), allocatable :: element
+      integer :: other
+
+      if (set == 0) return
+      associate (members => deck%mesh%element_sets(set)%members, has_node => card%has('REF NODE'))
+         other = findloc(deck%element_valid(members) .and. (deck%mesh%element_plane(members) == &
+            generalized_strain .neqv. has_node), .true., dim=1)
+         if (other == 0) return
+         element = 'element '//to_text(deck%mesh%element_number(members(other)))//' of '// &
+            deck%mesh%element_sets(set)%name
+         if (has_node) then
+            call deck%error(card%place_of('REF NODE'), element//' has no strain along z: REF '// &
+               'NODE= goes with elements CPEG')
+         else
+            call deck%error(card%place, element//' is in generalized plane strain: give REF '// &
+               'NODE=, the node whose degrees of freedom 3, 4 and 5 are its strain along z')
+         end if
+      end associate
+   end subroutine check_reference
 
    !> Gives the elements of its set a section; its trusses take it later. Sections are not sound
    !> where that set is not known.

@@ -9,8 +9,8 @@ module deck_builder_mesh
    use deck_reader, only: keyword_of
    use deck_source, only: place_type
    use deck_structure, only: cards_of, data_count
-   use element_kinds, only: element_corner_count, element_node_count, plane_strain, plane_stress, &
-      quad8
+   use element_kinds, only: element_corner_count, element_node_count, generalized_strain, &
+      plane_strain, plane_stress, quad8
    use element_types, only: drawn_line, line_kind, line_node_count, take_element_type
    use kinds, only: dp
    use mesh, only: add_node, extent_of, nodes_per_element
@@ -36,7 +36,6 @@ contains
    subroutine build_nodes(deck)
       type(deck_type), intent(inout) :: deck
       real(dp), allocatable :: heights(:)
-      real(dp) :: place(2)
       integer, allocatable :: places(:)
       integer :: j, k, n
       logical :: told
@@ -66,15 +65,31 @@ contains
       if (n == 0) call deck%lose('node')
       deck%node_index%noun = 'node'
       call deck%node_index%build(deck%mesh%node_number)
-      ! A node for the rotation of each coupling and rigid body, which no card can name.
+      ! Nodes that no card can name: for the turn about y of the REF NODE of a section, then for the
+      ! rotation of each coupling and rigid body.
+      do k = 1, merge(size(deck%cards%keywords), 0, n > 0)
+         associate (card => deck%cards%keywords(k))
+            if (card%name == 'SOLID SECTION' .and. card%has('REF NODE')) call add_unnamed(card, &
+               deck)
+         end associate
+      end do
       do k = 1, merge(size(deck%cards%keywords), 0, n > 0)
          if (all(deck%cards%keywords(k)%name /= [character(10) :: 'COUPLING', 'RIGID BODY'])) cycle
-         place = deck%mesh%coordinates(:, 1)
-         call add_node(deck%mesh, place)
-         deck%node_place = [deck%node_place, deck%cards%keywords(k)%place]
-         deck%node_valid = [deck%node_valid, .true.]
+         call add_unnamed(deck%cards%keywords(k), deck)
       end do
    end subroutine build_nodes
+
+   !> Adds a node of a card, in the place of the first one.
+   subroutine add_unnamed(card, deck)
+      type(keyword_card_type), intent(in) :: card
+      type(deck_type), intent(inout) :: deck
+      real(dp) :: place(2)
+
+      place = deck%mesh%coordinates(:, 1)
+      call add_node(deck%mesh, place)
+      deck%node_place = [deck%node_place, card%place]
+      deck%node_valid = [deck%node_valid, .true.]
+   end subroutine add_unnamed
 
    !> Of a node that is given more than once the last place counts, as in Abaqus and CalculiX.
    subroutine drop_repeated(deck)
@@ -273,7 +288,7 @@ contains
       if (len(note) > 0) call deck%note(note)
       if (plane == plane_stress .and. deck%plane == plane_by_element) call &
          warn_of_gmsh(card%place_of('TYPE'), deck)
-      if (deck%plane /= plane_by_element) plane = deck%plane
+      if (deck%plane /= plane_by_element .and. plane /= generalized_strain) plane = deck%plane
       corners = element_corner_count(kind)
       midsides = element_node_count(kind) - corners
       layout = 'element, '//to_text(corners)//' corners'

@@ -12,9 +12,10 @@ module deck_builder_verify
    use deck_structure, only: cards_of, data_count
    use kinds, only: dp
    use load_requests, only: target_type
+   use materials, only: reference_nodes
    use model, only: uncertainty_no, verify_type
    use quantity_types, only: find_quantity, needs_coupling, needs_heat, of_contact_points, &
-      of_history, of_interface, of_nodes, of_sections, quantity_type
+      of_history, of_interface, of_nodes, of_references, of_sections, quantity_type
    use spelling, only: known_choices, nearest_known
    use steps, only: analysis_static
    use text, only: read_real, string_type, to_text, to_upper
@@ -148,6 +149,8 @@ contains
          if (size(deck%model%contacts) == 0) lack = 'CONTACT PAIR'
       case (of_sections)
          if (.not. any(deck%model%couplings%is_section())) lack = 'PRE-TENSION SECTION'
+      case (of_references)
+         if (.not. any(deck%model%sections%reference(1) > 0)) lack = 'SOLID SECTION with REF NODE='
       case default
          continue
       end select
@@ -159,7 +162,7 @@ contains
             check%quantity, merge('equation', '        ', kind == of_sections))
       else if (any(to_upper(check%where) == ['MIN', 'MAX'])) then
          return
-      else if (any(kind == [of_nodes, of_sections])) then
+      else if (any(kind == [of_nodes, of_sections, of_references])) then
          call check_nodes(data, kind, deck)
       else if (kind == of_interface .and. check%where == '' .and. size(deck%model%contacts) == 1) &
          then
@@ -185,6 +188,8 @@ contains
       used = .false.
       if (kind == of_sections) then
          used(section_nodes(deck%model%couplings)) = .true.
+      else if (kind == of_references) then
+         used(reference_nodes(deck%model%sections)) = .true.
       else
          used([deck%mesh%element_nodes]) = .true.
          used(1:) = used(1:) .or. constrained_nodes(deck%model%equations, deck%model%couplings, &
@@ -195,6 +200,8 @@ contains
       if (size(nodes) == 0 .and. kind == of_sections) then
          call deck%error(data%place(2), data%text(2)//' is not the reference node of a '// &
             '*PRE-TENSION SECTION')
+      else if (size(nodes) == 0 .and. kind == of_references) then
+         call deck%error(data%place(2), data%text(2)//' is not the REF NODE of a *SOLID SECTION')
       else if (size(nodes) == 0) then
          if (all(deck%element_valid)) call deck%missing(data%place(2), 'no element has a node '// &
             'of '//data%text(2)//': it has no values', 'element')

@@ -7,6 +7,7 @@ module deck_checks
    use deck_structure, only: cards_of
    use elasticity, only: equivalent_poisson
    use element_kinds, only: axisymmetric, linear_kind, plane_stress, quad8, triangle3, triangle6
+   use equations, only: constrained_nodes, coupled_nodes, equation_nodes
    use kinds, only: dp, long
    use load_checks, only: check_loads
    use load_requests, only: request_list_type
@@ -55,6 +56,7 @@ contains
       call check_materials(deck)
       call check_tail(deck)
       call check_sliding(deck)
+      call check_references(deck)
       call check_planes(deck)
       call check_orientations(deck)
       call check_jacobians(deck, inverted)
@@ -76,6 +78,34 @@ contains
       call deck%error(deck%cards%keywords(cards(1))%place, 'TAIL=SPARSE does not go with '//what// &
          ', which needs derivatives between all contact points; leave TAIL= out')
    end subroutine check_tail
+
+   !> The reference node of a section has no displacements in the plane, which other cards relate.
+   subroutine check_references(deck)
+      type(deck_type), intent(inout) :: deck
+      logical :: related(0:size(deck%mesh%node_number))
+      integer, allocatable :: cards(:)
+      integer :: i
+
+      if (all(deck%model%sections%reference(1) == 0) .or. deck%has_errors()) return
+      associate (model => deck%model, n => size(deck%mesh%node_number))
+         related = .false.
+         related(1:) = constrained_nodes(model%equations, model%couplings, n) .or. &
+            equation_nodes(model%bars%elongation, n)
+         do i = 1, size(model%couplings)
+            related(coupled_nodes(deck%mesh, model%couplings(i))) = .true.
+         end do
+         do i = 1, size(model%transforms)
+            related(deck%mesh%node_sets(model%transforms(i)%set)%members) = .true.
+         end do
+         cards = cards_of(deck%cards, 'SOLID SECTION')
+         do i = 1, size(model%sections)
+            if (related(model%sections(i)%reference(1))) call deck%error(deck%cards%keywords( &
+               cards(i))%place_of('REF NODE'), 'node '//to_text(deck%mesh%node_number( &
+               model%sections(i)%reference(1)))//' is also on another card that moves it, such '// &
+               'as *EQUATION, *TRANSFORM, *RIGID BODY or a spring')
+         end do
+      end associate
+   end subroutine check_references
 
    !> Every material in use has what the steps need.
    subroutine check_materials(deck)

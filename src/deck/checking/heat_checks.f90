@@ -7,7 +7,7 @@ module heat_checks
    use deck_source, only: place_type
    use kinds, only: dp
    use load_requests, only: request_type
-   use materials, only: follows_temperature, of_expansion
+   use materials, only: follows_temperature, in_plane, of_expansion
    use model, only: model_type
    use steps, only: dof_temperature, load_film_sink, load_temperature, solves_heat, solves_mechanics
    use text, only: counted, to_text
@@ -146,7 +146,10 @@ contains
       real(dp) :: ends(2)                        !! [temperature]
       integer :: i, s
 
-      ends = [minval(model%initial_temperature), maxval(model%initial_temperature)]
+      associate (start => model%initial_temperature)
+         ends = [minval(start, mask=in_plane(model%sections, size(start))), maxval(start, mask= &
+            in_plane(model%sections, size(start)))]
+      end associate
       do s = 1, size(model%steps)
          associate (boundaries => model%steps(s)%boundaries, loads => model%steps(s)%loads)
             do i = 1, size(boundaries)

@@ -30,6 +30,9 @@ contains
       used([deck%mesh%element_nodes]) = .true.
       used(1:) = used(1:) .or. constrained_nodes(deck%model%equations, deck%model%couplings, &
          size(used) - 1) .or. equation_nodes(deck%model%bars%elongation, size(used) - 1)
+      do i = 1, size(deck%model%sections)
+         used(deck%model%sections(i)%reference) = .true.
+      end do
       card = 0
       do i = 1, deck%loads%count
          associate (request => deck%loads%items(i))

@@ -6,8 +6,8 @@
 !> is left of the pressure at a contact point of such a side at 1e-8.
 module mesh_checks
    use deck_context, only: deck_type
-   use element_kinds, only: axisymmetric, element_corner_count, element_node_count, linear_kind, &
-      plane_strain, side_node_count
+   use element_kinds, only: axisymmetric, element_corner_count, element_node_count, &
+      generalized_strain, linear_kind, plane_strain, side_node_count
    use element_sides, only: side_ends
    use kinds, only: dp
    use mesh, only: mesh_type
@@ -50,8 +50,8 @@ contains
 
       turns = deck%mesh%element_plane == axisymmetric .and. deck%element_valid
       ring = findloc(turns, .true., dim=1)
-      strained = findloc(deck%mesh%element_plane == plane_strain .and. deck%element_valid, .true., &
-         dim=1)
+      strained = findloc((deck%mesh%element_plane == plane_strain .or. deck%mesh%element_plane == &
+         generalized_strain) .and. deck%element_valid, .true., dim=1)
       if (ring > 0 .and. strained > 0) then
          call deck%error(deck%element_place(max(ring, strained)), 'element '// &
             to_text(deck%mesh%element_number(ring))//' is axisymmetric and element '// &

@@ -1,7 +1,7 @@
 !> Element types of the dialect: which are built, which are refused.
 module element_types
-   use element_kinds, only: axisymmetric, element_node_count, plane_strain, plane_stress, quad4, &
-      quad4_enhanced, quad8, quad8_reduced, triangle3, triangle6
+   use element_kinds, only: axisymmetric, element_node_count, generalized_strain, plane_strain, &
+      plane_stress, quad4, quad4_enhanced, quad8, quad8_reduced, triangle3, triangle6
    use spelling, only: nearest_known
    use text, only: string_type, to_upper
    implicit none
@@ -30,7 +30,8 @@ module element_types
 contains
 
    !> Kind and plane that an element type names, or why it cannot be used. Types of Abaqus for heat
-   !> (DC2D, DCAX), for both fields (T) and hybrid ones (H) are those of this program.
+   !> (DC2D, DCAX), for both fields (T) and hybrid ones (H) are those of this program. CPEG is CPE
+   !> with another plane.
    pure subroutine take_element_type(name, kind, plane, message, note)
       character(*), intent(in) :: name           !! TYPE= in upper case
       integer, intent(out) :: kind               !! quad8, ...; quad8 after an error
@@ -39,24 +40,28 @@ contains
       !> The type that is used in its place, or empty
       character(:), allocatable, intent(out), optional :: note
       type(string_type) :: names(size(plane_names)*size(kind_names))
-      character(:), allocatable :: own
+      character(:), allocatable :: own, plain
       integer :: i, k, n
+      logical :: is_general
 
       kind = quad8
       plane = plane_strain
       message = ''
       if (present(note)) note = ''
       n = 0
-      own = own_name(name)
+      is_general = index(name, 'CPEG') == 1
+      plain = name
+      if (is_general) plain = 'CPE'//name(5:)
+      own = own_name(plain)
       do i = 1, size(plane_names)
          do k = 1, size(kind_names)
             n = n + 1
             names(n)%value = trim(plane_names(i)//kind_names(k))
             if (own /= names(n)%value) cycle
             kind = element_kinds_named(k)
-            plane = planes(i)
-            if (present(note) .and. own /= name) note = '*ELEMENT, TYPE='//name//' is '//own// &
-               difference(name)
+            plane = merge(generalized_strain, planes(i), is_general)
+            if (present(note) .and. own /= plain) note = '*ELEMENT, TYPE='//name//' is '// &
+               own(:3)//trim(merge('G', ' ', is_general))//own(4:)//difference(plain)
             return
          end do
       end do
@@ -106,8 +111,6 @@ contains
       reason = ''
       if (index(name, 'C3D') == 1 .or. index(name, 'DC3D') == 1) then
          reason = 'models are two-dimensional'
-      else if (index(name, 'CPEG') == 1) then
-         reason = 'eps_zz is 0 in plane strain; take CPE'//name(5:)
       else if (name == 'M3D9') then
          reason = 'quadrilaterals of second order have 8 nodes; in gmsh set '// &
             'Mesh.SecondOrderIncomplete = 1'

@@ -101,7 +101,7 @@ module keywords
       keyword_type('INELASTIC HEAT FRACTION', in_model, 0, 1, ''), &
       keyword_type('ORIENTATION', in_model, 1, 2, 'NAME=/SYSTEM='), &
       keyword_type('SOLID SECTION', in_model, 0, 1, &
-         'ELSET=/MATERIAL=/ORIENTATION=/~OFFSET=/~CONTROLS='), &
+         'ELSET=/MATERIAL=/ORIENTATION=/REF NODE=/~OFFSET=/~CONTROLS='), &
       keyword_type('SPRING', in_model, 1, 2, 'ELSET='), &
       keyword_type('AMPLITUDE', in_both, 1, many, &
          'NAME=/TIME=/DEFINITION=/FIXED INTERVAL=/BEGIN=/VALUE=/~SMOOTH='), &
