@@ -1,8 +1,8 @@
 !> Bodies reduced to the nodes of their faces, piece by piece: the first of two stages where many
-!> interfaces join many bodies, or where faces slide. Nodes that no constraint binds and that belong to one piece only are
-!> inside; the others are kept: nodes of faces, supports, ties, equations, and those at which a long
-!> body is cut. With i for the inside of a piece and k for the kept nodes around it, the pieces
-!> leave of K u = f
+!> interfaces join many bodies, or where faces slide. Nodes that no constraint binds and that belong
+!> to one piece only are inside; the others are kept: nodes of faces, supports, ties, equations, and
+!> those at which a long body is cut. With i for the inside of a piece and k for the kept nodes
+!> around it, the pieces leave of K u = f
 !>
 !>    K' = K_kk - sum K_ki K_ii^-1 K_ik,   f' = f_k - sum K_ki K_ii^-1 f_i.
 !>
@@ -29,8 +29,8 @@ module body_pieces
    type :: body_division_type
       !> (nodes, nodes) joined by elements; without values where bodies are not divided
       type(sparse_matrix_type) :: graph
-      !> (dofs) 0 for kept ones; unallocated likewise. Below 0 for prescribed ones, which are no part
-      !> of what is left, where faces slide; else these are kept
+      !> (dofs) 0 for kept ones; unallocated likewise. Where faces slide below 0 for prescribed ones,
+      !> which are no part of what is left; else these are kept
       integer, allocatable :: piece(:)
       !> (nodes) nodes of faces that slide, kept whichever contact points bind them; unallocated
       !> where none does. What is left of such bodies, which are not cut, goes to a solver; else it
@@ -77,8 +77,7 @@ contains
       is_kept = is_bound
       if (allocated(self%is_on_face)) is_kept = is_bound .or. self%is_on_face
       if (allocated(self%is_bound)) then
-         if (all(is_kept .eqv. self%is_bound) .and. all(is_prescribed .eqv. self%is_prescribed)) &
-            return
+         if (all([is_kept, is_prescribed] .eqv. [self%is_bound, self%is_prescribed])) return
       end if
       self%is_bound = is_kept
       self%is_prescribed = is_prescribed

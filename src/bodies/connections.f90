@@ -94,8 +94,8 @@ module connections
 
 contains
 
-   !> Matches the surfaces of one *CONTACT PAIR, with the thickness of the slave's first element; the
-   !> displaced ones where it follows sliding.
+   !> Matches the surfaces of one *CONTACT PAIR, with the thickness of the slave's first element, or
+   !> places its contact points on the displaced ones where it follows sliding.
    !> Error: as make_contact_points and place_points.
    subroutine match_surfaces(model, i, points, error, displacement)
       type(model_type), intent(in) :: model
@@ -103,10 +103,10 @@ contains
       type(contact_points_type), intent(out) :: points
       type(error_type), allocatable, intent(out) :: error
       real(dp), intent(in), optional :: displacement(:)   !! (2 nodes), without it none [length]
-      real(dp) :: none(2*size(model%mesh%node_number))
+      real(dp) :: none(2*size(model%mesh%node_number)), thickness
 
-      associate (contact => model%contacts(i), thickness => thickness_at(model, &
-         model%contacts(i)%slave))
+      thickness = thickness_at(model, model%contacts(i)%slave)
+      associate (contact => model%contacts(i))
          if (.not. contact%follows_sliding) then
             call make_contact_points(model%mesh, contact, thickness, points, error)
          else if (present(displacement)) then

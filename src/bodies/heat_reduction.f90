@@ -69,8 +69,8 @@ contains
       type(sparse_matrix_type), intent(in) :: film     !! (nodes, nodes) [power/temperature]
 
       serves = self%is_of(bodies%thermal, film) .and. (.not. bodies%is_coupled .or. &
-         (self%is_on_demand(bodies) .and. has_kept_load(self, bodies)) .or. (has_loads(self, bodies) .and. self%is_balanced .and. &
-         has_friction_loads(self, bodies)))
+         (self%is_on_demand(bodies) .and. has_kept_load(self, bodies)) .or. &
+         (has_loads(self, bodies) .and. self%is_balanced .and. has_friction_loads(self, bodies)))
    end function serves
 
    !> Whether loads of jumps are formed as they are asked for: where the caller says so, and where
@@ -276,8 +276,8 @@ contains
    end function means_of_tail
 
    !> Forces on the degrees of freedom that pieces of the bodies keep, of a unit temperature of each
-   !> node that they keep and that is not prescribed: like the matrices that they leave, the same for
-   !> all places of faces that slide.
+   !> node that they keep and that is not prescribed: the same for all places of faces that slide,
+   !> as the matrices that they leave are.
    subroutine form_kept_load(self, bodies)
       class(heat_reduction_type), intent(inout) :: self
       type(reduced_bodies_type), intent(in) :: bodies
@@ -303,8 +303,8 @@ contains
       end associate
    end subroutine form_kept_load
 
-   !> Condensed mechanical loads of temperatures of the nodes that pieces keep, or of all where there
-   !> are none, balanced.
+   !> Condensed mechanical loads, balanced, of temperatures of the nodes that pieces keep, or of all
+   !> where there are none.
    function loads_by(thermal_load, bodies, temperature) result(load)
       type(sparse_matrix_type), intent(in) :: thermal_load   ! of these nodes
       type(reduced_bodies_type), intent(in) :: bodies

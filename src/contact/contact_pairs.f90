@@ -178,7 +178,8 @@ contains
          if (allocated(error)) return
          pieces(k) = points
          if (definition%pairing == pairing_nodes) then
-            call set_nodes_on_sides(mesh, definition, slaves(i), master, thickness, pieces(k), error)
+            call set_nodes_on_sides(mesh, definition, slaves(i), master, thickness, pieces(k), &
+               error)
             if (allocated(error)) return
          else
             call set_mortar_points(mesh, slaves(i), master, others_of(slaves, i, masters, j), &

@@ -82,7 +82,8 @@ module contact_points
       logical :: about_axis = .false.          !! whether the model is axisymmetric
       !> Whether the master is a rigid surface: the master nodes are its reference node
       logical :: is_rigid = .false.
-      logical :: follows_sliding = .false.     !! whether they lie on displaced faces (sliding_faces)
+      !> Whether they lie on displaced faces (sliding_faces)
+      logical :: follows_sliding = .false.
    contains
       procedure :: ends
       procedure :: on_one_piece

@@ -1,8 +1,8 @@
 !> Contact points of the slave's nodes and the points of the master's sides that their normals meet:
 !> what node pairs become where faces slide. The master's point has the shape functions of its side;
 !> the master's normal there is interpolated between those of its nodes, and so does not jump from
-!> side to side. A pressure on sides that do not match is uneven by what the nodes see of each other;
-!> mortar points pass it exactly.
+!> side to side. On sides that do not match a constant pressure comes out uneven; mortar points pass
+!> it exactly.
 module node_to_side
    use chain_geometry, only: arc_lengths, side_positions
    use contact_definitions, only: contact_definition_type
@@ -62,7 +62,8 @@ contains
       call take_shapes(mesh, master, foot(kept), points)
    end subroutine set_nodes_on_sides
 
-   !> The points that the normals of the slave's nodes meet; at nodes that meet none, where they are.
+   !> The points that the normals of the slave's nodes meet; the node's own place where they meet
+   !> none.
    pure subroutine find_feet(mesh, slave, master, foot)
       type(mesh_type), intent(in) :: mesh
       type(surface_chain_type), intent(in) :: slave, master

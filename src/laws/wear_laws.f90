@@ -1,5 +1,5 @@
-!> Archard's law of wear: faces that slip by ds under a pressure p lose the depth K p ds together, of
-!> which a share is the slave's.
+!> Archard's law of wear: faces that slip by ds under a pressure p lose the depth K p ds together,
+!> of which a share is the slave's.
 !> J. F. Archard, J. Appl. Phys. 24 (1953) 981.
 module wear_laws
    use conductance_laws, only: line_value

@@ -216,8 +216,9 @@ contains
          ! Nodes of faces that slide have no contact quantities where nothing is opposite.
          associate (start => interfaces(i)%at_face_nodes%start)
             do k = self%face_start(i), self%face_start(i + 1) - 1
-               if (start(self%face_row(k) + 1) > start(self%face_row(k))) &
+               if (start(self%face_row(k) + 1) > start(self%face_row(k))) then
                   values(self%face_point(k)) = face(self%face_row(k))
+               end if
             end do
          end associate
       end do

@@ -207,8 +207,8 @@ contains
       if (allocated(attempt%omega_start)) deallocate (attempt%omega_start)
       do placing = 1, most_placings
          call solve_corrected(run, model, attempt, error)
-         if (allocated(error) .or. .not. solves_mechanics(model%steps(run%control%step)%analysis)) &
-            return
+         if (allocated(error)) return
+         if (.not. solves_mechanics(model%steps(run%control%step)%analysis)) return
          has_moved = run%bodies%faces_moved(attempt%next%displacement)
          is_worn = .true.
          if (allocated(run%bodies%worn)) call follow_wear(run, attempt, is_worn)

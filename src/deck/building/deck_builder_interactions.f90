@@ -135,8 +135,8 @@ contains
       if (table > 0) call build_gap_conductance(deck%cards%keywords(table), interaction%name, &
          .false., deck, interaction%law)
       if (interaction%overlap%is_soft() .and. interaction%wear%wears()) call deck%error( &
-         deck%cards%keywords(taken(5))%place, '*WEAR is refused beside a *SURFACE BEHAVIOR whose '// &
-         'faces overlap: worn faces are hard ones; leave one of them out')
+         deck%cards%keywords(taken(5))%place, '*WEAR is refused beside a *SURFACE BEHAVIOR '// &
+         'whose faces overlap: worn faces are hard ones; leave one of them out')
       if (taken(4) > 0) call build_gap_radiation(deck%cards%keywords(taken(4)), deck, &
          interaction%law)
    end subroutine build_laws
@@ -150,15 +150,15 @@ contains
       integer :: k
       logical :: valid
 
-      if (card%has('CYCLES')) call deck%error(card%place_of('CYCLES'), 'CYCLES= belongs to *WEAR '// &
-         'in a step; leave it out here')
+      if (card%has('CYCLES')) call deck%error(card%place_of('CYCLES'), 'CYCLES= belongs to '// &
+         '*WEAR in a step; leave it out here')
       if (size(card%data) == 0) then
          call deck%missing(card%place, '*WEAR needs a data card: K, share of the slave, '// &
             'temperature', 'data')
          return
       end if
-      call read_rows(card%data, 'K (depth per pressure and slip) >=0/share of the slave? >=0 <=1 '// &
-         '=1/temperature? =0', deck, values, valid)
+      call read_rows(card%data, 'K (depth per pressure and slip) >=0/share of the slave? >=0 '// &
+         '<=1 =1/temperature? =0', deck, values, valid)
       if (.not. valid) return
       call check_ascending(card%data, 3, 'temperatures', values(3, :), deck)
       do k = 2, size(card%data)

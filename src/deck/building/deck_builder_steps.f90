@@ -121,13 +121,13 @@ contains
       type(deck_type), intent(inout) :: deck
       real(dp), intent(inout) :: cycles
 
-      if (size(card%data) > 0) call deck%error(card%data(1)%place(1), '*WEAR in a step has no data '// &
-         'cards: laws of wear belong to a *SURFACE INTERACTION')
+      if (size(card%data) > 0) call deck%error(card%data(1)%place(1), '*WEAR in a step has no '// &
+         'data cards: laws of wear belong to a *SURFACE INTERACTION')
       if (card%has('CYCLES')) then
          call take_parameter(card, 'CYCLES', deck, cycles, '>0')
       else
-         call deck%error(card%place, '*WEAR in a step needs CYCLES=, for how many cycles its slip '// &
-            'stands')
+         call deck%error(card%place, '*WEAR in a step needs CYCLES=, for how many cycles its '// &
+            'slip stands')
       end if
       if (.not. any(deck%model%interactions%wear%wears())) call deck%missing(card%place, &
          'no surface interaction has a law of wear', '*WEAR')
@@ -193,8 +193,8 @@ contains
          if (step%analysis /= analysis_coupled .or. counts%analyses == 0) call deck%error( &
             card%place, '*STABILITY needs a step with *COUPLED TEMPERATURE-DISPLACEMENT before '// &
             'it: whether a state lasts is decided by heat and contact together')
-         if (any(deck%model%interactions%wear%wears())) call deck%error(card%place, '*STABILITY is '// &
-            'refused with *WEAR: whether a state lasts would be decided with the wear of its '// &
+         if (any(deck%model%interactions%wear%wears())) call deck%error(card%place, '*STABILITY '// &
+            'is refused with *WEAR: whether a state lasts would be decided with the wear of its '// &
             'increment; leave one of them out')
          step%stability_frequency = huge(1)
          call take_parameter(card, 'FREQUENCY', deck, step%stability_frequency, '>=1')
