@@ -151,8 +151,8 @@ contains
       case (of_path)
          call append(deck%model%notes, 'no numerical uncertainties: where heat is stored, '// &
             'bodies yield or creep, faces wear, properties follow temperatures or sections '// &
-            'have a pre-tension, errors build up along the path, which ERRORS=FULL follows once '// &
-            'more')
+            'have a pre-tension, errors build up along the path, which ERRORS=FULL follows '// &
+            'once more')
       case (of_branches)
          call append(deck%model%notes, 'no numerical uncertainties of branches')
          deck%model%uncertainty = uncertainty_no

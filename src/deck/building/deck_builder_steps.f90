@@ -193,9 +193,9 @@ contains
          if (step%analysis /= analysis_coupled .or. counts%analyses == 0) call deck%error( &
             card%place, '*STABILITY needs a step with *COUPLED TEMPERATURE-DISPLACEMENT before '// &
             'it: whether a state lasts is decided by heat and contact together')
-         if (any(deck%model%interactions%wear%wears())) call deck%error(card%place, '*STABILITY '// &
-            'is refused with *WEAR: whether a state lasts would be decided with the wear of its '// &
-            'increment; leave one of them out')
+         if (any(deck%model%interactions%wear%wears())) call deck%error(card%place, &
+            '*STABILITY is refused with *WEAR: whether a state lasts would be decided with the '// &
+            'wear of its increment; leave one of them out')
          step%stability_frequency = huge(1)
          call take_parameter(card, 'FREQUENCY', deck, step%stability_frequency, '>=1')
       case ('CONTACT PRINT')
