@@ -29,8 +29,8 @@ module body_pieces
    type :: body_division_type
       !> (nodes, nodes) joined by elements; without values where bodies are not divided
       type(sparse_matrix_type) :: graph
-      !> (dofs) 0 for kept ones; unallocated likewise. Where faces slide, prescribed ones are below 0,
-      !> no part of what is left; else these are kept
+      !> (dofs) 0 for kept ones; unallocated likewise. Where faces slide, prescribed ones are below
+      !> 0 and no part of what is left; else these are kept
       integer, allocatable :: piece(:)
       !> (nodes) nodes of faces that slide, kept whichever contact points bind them; unallocated
       !> where none does. What is left of such bodies, which are not cut, goes to a solver; else it

@@ -58,6 +58,7 @@ contains
       type(trial_type), intent(inout) :: trial   !! loaded, omega*^0 and guess in; last pass out
       type(error_type), allocatable, intent(out) :: error
       type(contact_state_type) :: guess
+      type(fixed_point_type) :: first
       real(dp) :: omega_start(size(trial%next%omega))
       integer :: before
 
@@ -67,8 +68,13 @@ contains
          next%edge = edge_heat_type()
          guess = next%contact
          omega_start = next%omega
+         ! A derivative of divided bodies costs a solution for each contact point: it is formed where
+         ! it is needed.
+         first = controls
+         if (heat%is_divided(bodies) .and. controls%method == method_newton) first = &
+            with_method(controls, method_anderson)
          if (workspace%resolves_edge) then
-            call use_method(bodies, heat, controls, trial, error)
+            call use_method(bodies, heat, first, trial, error)
             if (.not. allocated(error)) return
             if (error%status /= status_no_convergence) return
             call append(workspace%record%notes, 'the position of the edge of contact in its '// &
@@ -77,9 +83,8 @@ contains
             workspace%resolves_edge = .false.
             workspace%edge = edge_heat_type()
          end if
-         if (heat%is_divided(bodies) .and. controls%method == method_newton) then
-            ! A derivative costs a solution for each contact point: it is formed where it is needed.
-            call use_method(bodies, heat, with_method(controls, method_anderson), trial, error)
+         if (first%method /= controls%method) then
+            call use_method(bodies, heat, first, trial, error)
             if (.not. allocated(error)) return
             if (error%status /= status_no_convergence) return
             call start_again()
