@@ -213,6 +213,7 @@ contains
          is_worn = .true.
          if (allocated(run%bodies%worn)) call follow_wear(run, attempt, is_worn)
          if (is_worn .and. .not. has_moved) then
+            call judge_last(run, model, attempt)
             if (allocated(run%bodies%worn)) then
                call wear_faces(run%bodies, attempt%before, attempt%wear_by_pressure, attempt%next)
                call run%bodies%wear_to(attempt%next%wear)
@@ -236,6 +237,27 @@ contains
          'wear and the slip that makes it do not settle in    ', has_moved))//' '// &
          to_text(most_placings)//' turns')
    end subroutine solve_on_faces
+
+   !> Finds the gain of the last of several solutions of a stage.
+   subroutine judge_last(run, model, attempt)
+      type(simulation_type), intent(in) :: run
+      type(model_type), intent(in) :: model
+      type(attempt_type), intent(inout) :: attempt
+
+      if (.not. (run%bodies%is_coupled .and. solves_repeatedly(run))) return
+      if (attempt%data%equation%is_explicit() .or. .not. &
+         model%steps(run%control%step)%fixed_point%finds_gain) return
+      call judge_solution(run%bodies, run%heat_reductions(run%in_use), attempt%trial_type)
+      attempt%record%solution_report_type = attempt%workspace%record
+   end subroutine judge_last
+
+   !> Whether a stage is solved again until what it was solved with is that of its solution.
+   pure logical function solves_repeatedly(run)
+      type(simulation_type), intent(in) :: run
+
+      solves_repeatedly = run%corrections%corrects .or. allocated(run%bodies%faces_at) .or. &
+         allocated(run%bodies%worn)
+   end function solves_repeatedly
 
    !> Takes the slip of a solution for its wear, unless it is that with which it was solved.
    subroutine follow_wear(run, attempt, is_same)
@@ -353,11 +375,6 @@ contains
             call attempt%begin_again(attempt%before)
          end do
          call corrections%keep(run%bodies, attempt%before, attempt%next)
-         if (run%bodies%is_coupled .and. step%fixed_point%finds_gain .and. .not. &
-            attempt%data%equation%is_explicit()) then
-            call judge_solution(run%bodies, run%heat_reductions(run%in_use), attempt%trial_type)
-            attempt%record%solution_report_type = attempt%workspace%record
-         end if
          attempt%record%corrections = corrections%passes
          attempt%record%has_new_operators = corrections%renewed_at > 0
       end associate
@@ -397,9 +414,9 @@ contains
          data%is_corrected = run%corrections%corrects
          if (allocated(attempt%omega_start)) data%omega_start = attempt%omega_start
          if (allocated(attempt%wear_by_pressure)) data%wear_by_pressure = attempt%wear_by_pressure
-         ! The last of the corrected solutions is judged alone.
+         ! The last of several solutions is judged alone.
          data%fixed_point%finds_gain = data%fixed_point%finds_gain .and. .not. &
-            run%corrections%corrects
+            solves_repeatedly(run)
          if (step%is_transient) then
             associate (stage => attempt%stage)
                call data%equation%hold_heat(bodies%capacity, stage%duration, stage%temperature, &
