@@ -15,6 +15,8 @@ QUANTITY_LINES = {
     "shear": (0, (4.5, 1.5)),
     "mu_p": (0, (1.2, 1.2)),
     "heat_flux": "solid",
+    "wear_slave": "solid",
+    "wear_master": "solid",
 }
 MU_P_WIDTH = 1.4  # its dots are seen where friction lies on them
 
@@ -27,7 +29,7 @@ def add(picture, panels, kinds, overlays):
     """Name curves, loads, zone edges and digitised figures on the panels of a picture."""
     several = picture.several
     handles = []
-    for axes, quantities, letter in zip(panels, kinds, "abc"):
+    for axes, quantities, letter in zip(panels, kinds, "abcde"):
         handles += quantity_handles(picture, quantities) if len(quantities) > 1 else []
         if len(kinds) > 1:
             place = {"xytext": (-30, 4), "textcoords": "offset points"}

@@ -10,7 +10,9 @@ from .result import OPEN, UNJUDGED
 from .style import plt
 from .tables import stack_tables
 
-CURVES = ("pressure", "shear", "heat_flux")
+CURVES = ("pressure", "shear", "heat_flux", "wear_slave", "wear_master")
+TRACTIONS = ("pressure", "shear", "mu_p")   # end at the sharpened edges of contact
+WORN = {"wear_slave": "slave", "wear_master": "master"}
 PASSED_OVER = ("x", "y", "s", "contact", "increment", "load", "status", "mu_p")
 
 
@@ -96,7 +98,8 @@ class Picture:
         kinds = [["pressure", *friction]]
         if self.several and friction:
             kinds = [["pressure"], friction]
-        return kinds + ([["heat_flux"]] if flux is not None else [])
+        worn = [[name] for name in WORN if np.any(self.contact.get(name, 0.0) != 0.0)]
+        return kinds + ([["heat_flux"]] if flux is not None else []) + worn
 
     @property
     def several(self):
@@ -131,7 +134,7 @@ class Picture:
             places, heights = at[piece], values[piece]
             if self.overlap:
                 looks["color"] = self.colours[self.contact.part_number(piece)]
-            if quantity != "heat_flux":
+            if quantity in TRACTIONS:
                 places, heights = self.with_edges(row, piece, heights)
             for sign in (1, -1) if both else (1,):
                 axes.plot(places, sign * heights, zorder=2, **looks)
@@ -185,6 +188,8 @@ class Picture:
         units = self.result.units
         if quantities == ["heat_flux"]:
             return units.label("Heat flux $q$", "flux")
+        if quantities[0] in WORN:
+            return units.label(f"Wear of the {WORN[quantities[0]]}", "length")
         if quantities == ["pressure"]:
             return units.label("Pressure $p$", "stress")
         return units.label("Contact traction" if "pressure" in quantities else "Friction", "stress")

@@ -88,9 +88,9 @@ class Contact:
     def __getitem__(self, key):
         return self.data[key]
 
-    def get(self, key):
-        """Return the dataset `key`, or None where the deck does not model it."""
-        return self.data.get(key)
+    def get(self, key, otherwise=None):
+        """Return the dataset `key`; None, or something else, where the deck does not model it."""
+        return self.data.get(key, otherwise)
 
     @property
     def pieces(self):

@@ -214,6 +214,20 @@ def test_profiles_at_chosen_loads_hold_the_values_of_the_file(draw, result, tmp_
     np.testing.assert_array_equal(numbers(drawn["mu_p"]), FRICTION * pressure)
 
 
+def test_profiles_of_faces_that_wear_have_a_panel_for_the_depth(kept, result, tmp_path):
+    with h5py.File(result, "r+") as file:
+        contact = file["contact/CYLINDER"]
+        depth = 1e-3 * contact["pressure"][()]
+        contact["wear_slave"], contact["wear_master"] = depth, 0.0 * depth
+    (figure,) = kept("profiles", result)
+    axes = figure.axes[-1]
+    assert axes.get_ylabel().startswith("Wear of the slave")
+    heights = np.concatenate([line.get_ydata() for line in axes.get_lines()])
+    assert heights.max() == depth[-1].max()
+    drawn = table(tmp_path, "case.profiles.csv")
+    np.testing.assert_array_equal(numbers(drawn["wear_slave"]), depth[-1])
+
+
 def test_profiles_are_of_the_last_load_unless_said(tabulate, result, tmp_path):
     assert tabulate("profiles", result) == three("case.profiles")
     assert set(table(tmp_path, "case.profiles.csv")["load"]) == {"900.0"}
