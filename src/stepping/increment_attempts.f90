@@ -4,7 +4,6 @@
 module increment_attempts
    use clock, only: wall_seconds
    use constraint_checks, only: check_prescribed
-   use contact_system, only: contact_open
    use controls, only: method_newton
    use coupled_increment, only: differ, judge_solution
    use energies, only: add_friction_work
@@ -21,8 +20,8 @@ module increment_attempts
    use load_histories, only: step_clock_type
    use model, only: model_type
    use records, only: add_attempts, increment_record_type
-   use reduced_bodies, only: reduced_bodies_type
    use simulation, only: simulation_type
+   use sliding_attempts, only: check_arrivals, check_slip, lie_where_placed
    use solution_state, only: solution_state_type
    use steps, only: solves_heat, solves_mechanics
    use text, only: to_text
@@ -34,10 +33,8 @@ module increment_attempts
    !> Growth of plastic strains that no equilibrium has, but with forces that rounding makes
    real(dp), parameter :: of_collapse = 1.0_dp
 
-   !> How often contact points of faces that slide are placed anew in an increment, and the part of
-   !> their spacing within which their place is the same.
+   !> How often contact points of faces that slide are placed anew in an increment.
    integer, parameter :: most_placings = 10
-   real(dp), parameter :: same_place = 1.0e-5_dp
 
    !> The trial solution of an attempt, or of the stage that it has come to, and what it found.
    type, extends(trial_type) :: attempt_type
@@ -202,13 +199,14 @@ contains
       do placing = 1, most_placings
          call solve_corrected(run, model, attempt, error)
          if (allocated(error) .or. .not. allocated(run%bodies%faces_at)) return
-         if (run%bodies%farthest_slide(attempt%next%displacement) <= same_place) then
+         if (lie_where_placed(run%bodies, attempt%next%displacement)) then
             attempt%next%faces_at = run%bodies%faces_at
-            call check_slip(run, model, attempt, error)
+            call check_slip(run%bodies, model, attempt%before, attempt%next, attempt%record, error)
             return
          end if
          call run%place_faces(model, attempt%next%displacement, error)
-         if (.not. allocated(error)) call check_arrivals(run%bodies, model, attempt, error)
+         if (.not. allocated(error)) call check_arrivals(run%bodies, model, attempt%before, &
+            attempt%next%displacement, error)
          if (allocated(error)) return
          call carry_to_faces(run%bodies, attempt%before)
          attempt%next%contact%slip_origin = attempt%before%contact%slip_origin
@@ -216,70 +214,6 @@ contains
       call set_error(error, status_no_convergence, 'contact points of faces that slide find no '// &
          'place in '//to_text(most_placings)//' turns')
    end subroutine solve_on_faces
-
-   !> Whether no contact point slips by more than the spacing of nodes: its master is that of the
-   !> end of the increment, and its friction acts along one direction.
-   subroutine check_slip(run, model, attempt, error)
-      type(simulation_type), intent(in) :: run
-      type(model_type), intent(in) :: model
-      type(attempt_type), intent(inout) :: attempt
-      type(error_type), allocatable, intent(out) :: error
-      character(:), allocatable :: words
-      integer :: i, k
-      real(dp) :: slip(size(attempt%next%omega))
-
-      slip = abs(attempt%next%contact%tangential - attempt%before%contact%tangential)
-      where (attempt%next%contact%contact_state == contact_open) slip = 0.0_dp
-      do i = 1, size(run%bodies%interfaces)
-         associate (points => run%bodies%interfaces(i), first => &
-            run%bodies%points%interface_start(i))
-            if (.not. points%follows_sliding) cycle
-            associate (over => slip(first:first + size(points%edge) - 1)*(points%side_nodes - 1)* &
-               points%node_spacings/points%edge)
-               k = maxloc(over, dim=1)
-               if (over(k) <= 1.0_dp + same_place) cycle
-               words = points%name//' slips by '//to_text(slip(first - 1 + k))// &
-                  ' in an increment, more than the spacing of nodes, '//to_text(slip(first - 1 + &
-                  k)/over(k))//', at slave node '//to_text(model%mesh%node_number( &
-                  run%bodies%points%slave(first - 1 + k)))
-            end associate
-         end associate
-         if (model%steps(run%control%step)%direct) then
-            call attempt%record%warn('contact pair '//words// &
-               ', which DIRECT does not allow to be cut back')
-         else
-            call set_error(error, status_no_convergence, 'contact pair '//words)
-            return
-         end if
-      end do
-   end subroutine check_slip
-
-   !> Whether no contact point that meets its master comes from behind it.
-   subroutine check_arrivals(bodies, model, attempt, error)
-      type(reduced_bodies_type), intent(in) :: bodies         ! with their faces placed
-      type(model_type), intent(in) :: model
-      type(attempt_type), intent(in) :: attempt
-      type(error_type), allocatable, intent(out) :: error
-      real(dp) :: gap(size(attempt%next%omega))
-      integer :: i, k
-
-      gap = bodies%points%initial_gap - sum(bodies%points%normal* &
-         bodies%points%relative(attempt%next%displacement), dim=1)
-      do i = 1, size(bodies%interfaces)
-         if (.not. bodies%interfaces(i)%follows_sliding) cycle
-         associate (edge => bodies%interfaces(i)%edge, first => bodies%points%interface_start(i))
-            do k = first, first + size(edge) - 1
-               if (gap(k) >= -edge(k - first + 1) .or. attempt%before%contact%contact_state(k) /= &
-                  contact_open) cycle
-               call set_error(error, status_no_convergence, 'contact pair '// &
-                  bodies%interfaces(i)%name//': slave node '//to_text(model%mesh%node_number( &
-                  bodies%points%slave(k)))//' would pass through the master from behind: it is '// &
-                  to_text(-gap(k))//' inside')
-               return
-            end do
-         end associate
-      end do
-   end subroutine check_arrivals
 
    !> Solves the fields of a stage until its corrections are those of its solution.
    subroutine solve_corrected(run, model, attempt, error)
