@@ -208,6 +208,7 @@ contains
          if (.not. allocated(error)) call check_arrivals(run%bodies, model, attempt%before, &
             attempt%next%displacement, error)
          if (allocated(error)) return
+         call run%loads%move_to(attempt%stage%clock, model)   ! reducing bodies moves them
          call carry_to_faces(run%bodies, attempt%before)
          attempt%next%contact%slip_origin = attempt%before%contact%slip_origin
       end do
