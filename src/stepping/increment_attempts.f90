@@ -21,7 +21,7 @@ module increment_attempts
    use model, only: model_type
    use records, only: add_attempts, increment_record_type
    use simulation, only: simulation_type
-   use sliding_attempts, only: check_arrivals, check_slip, lie_where_placed
+   use sliding_attempts, only: check_arrivals, check_slip
    use solution_state, only: solution_state_type
    use steps, only: solves_heat, solves_mechanics
    use text, only: to_text
@@ -199,7 +199,7 @@ contains
       do placing = 1, most_placings
          call solve_corrected(run, model, attempt, error)
          if (allocated(error) .or. .not. allocated(run%bodies%faces_at)) return
-         if (lie_where_placed(run%bodies, attempt%next%displacement)) then
+         if (.not. run%bodies%faces_moved(attempt%next%displacement)) then
             attempt%next%faces_at = run%bodies%faces_at
             call check_slip(run%bodies, model, attempt%before, attempt%next, attempt%record, error)
             return

@@ -1,5 +1,5 @@
-!> What an attempt asks of contact points that follow sliding: that they lie where its solution has
-!> them, and that they have come there step by step.
+!> What an attempt asks of contact points that follow sliding: that they have come where they are step
+!> by step, from in front of their masters.
 module sliding_attempts
    use contact_system, only: contact_open
    use errors, only: error_type, set_error, status_no_convergence
@@ -11,46 +11,11 @@ module sliding_attempts
    use text, only: to_text
    implicit none
    private
-   public :: check_arrivals, check_slip, lie_where_placed
+   public :: check_arrivals, check_slip
 
-   real(dp), parameter :: same_place = 1.0e-5_dp   !! part of the spacing of contact points
+   real(dp), parameter :: over_spacing = 1.0e-5_dp   !! slip over a spacing that is rounding
 
 contains
-
-   !> Whether contact points that follow sliding lie where they were placed.
-   pure logical function lie_where_placed(bodies, displacement)
-      type(reduced_bodies_type), intent(in) :: bodies !! with such contact points
-      real(dp), intent(in) :: displacement(:)         !! (2 nodes) [length]
-      real(dp) :: moved(size(bodies%points%slave))
-      integer :: i
-
-      moved = movement(bodies, displacement - bodies%faces_at)
-      lie_where_placed = .true.
-      do i = 1, size(bodies%interfaces)
-         associate (first => bodies%points%interface_start(i), edge => bodies%interfaces(i)%edge)
-            if (bodies%interfaces(i)%follows_sliding) lie_where_placed = lie_where_placed .and. &
-               all(moved(first:first + size(edge) - 1) <= same_place*edge)
-         end associate
-      end do
-   end function lie_where_placed
-
-   !> How far contact points move against their masters; against the master's first node, or its
-   !> reference node, where nothing is opposite [length].
-   pure function movement(bodies, displacement) result(moved)
-      type(reduced_bodies_type), intent(in) :: bodies
-      real(dp), intent(in) :: displacement(:)         ! (2 nodes) [length]
-      real(dp) :: moved(size(bodies%points%slave)), relative(2, size(moved))
-      integer :: k
-
-      relative = bodies%points%relative(displacement)
-      do k = 1, size(moved)
-         associate (master => bodies%points%master(k))
-            if (bodies%points%is_beyond(k)) relative(:, k) = relative(:, k) - &
-               displacement(2*master - 1:2*master)
-         end associate
-      end do
-      moved = norm2(relative, dim=1)
-   end function movement
 
    !> Whether no contact point that is closed at the start or the end of an increment slips by more
    !> than the spacing of nodes: its master is that of the end, and its friction acts along one
@@ -67,7 +32,7 @@ contains
       integer :: i, k
 
       slip = abs(next%contact%tangential - before%contact%tangential)
-      where (bodies%points%is_beyond) slip = movement(bodies, next%displacement - &
+      where (bodies%points%is_beyond) slip = bodies%movement(next%displacement - &
          before%displacement)
       where (next%contact%contact_state == contact_open .and. before%contact%contact_state == &
          contact_open) slip = 0.0_dp
@@ -76,7 +41,7 @@ contains
             if (.not. points%follows_sliding) cycle
             associate (spacing => points%edge/((points%side_nodes - 1)*points%node_spacings))
                k = maxloc(slip(first:first + size(spacing) - 1)/spacing, dim=1)
-               if (slip(first - 1 + k) <= (1.0_dp + same_place)*spacing(k)) cycle
+               if (slip(first - 1 + k) <= (1.0_dp + over_spacing)*spacing(k)) cycle
                beyond = slip(first - 1 + k)
                words = ' in an increment, more than the spacing of nodes, '// &
                   to_text(spacing(k))//', at slave node '//to_text(model%mesh%node_number( &
