@@ -14,10 +14,10 @@ PRINTS = ["*NODE PRINT, NSET=RAIL.BOTTOM, TOTALS=ONLY", "RF",
           "*NODE PRINT, NSET=FOLLOWED", "U"]
 
 
-def deck(bodies, friction, depth, slide, followed):
+def deck(bodies, friction, depth, slide, followed, penalty):
     """Return a slider that is pressed down by a depth at its top and slid: one deck for both."""
     law = ["*SURFACE INTERACTION, NAME=FACES",
-           "*SURFACE BEHAVIOR, PRESSURE-OVERCLOSURE=LINEAR", "1e7"]
+           "*SURFACE BEHAVIOR, PRESSURE-OVERCLOSURE=LINEAR", penalty]
     if friction:
         law += ["*FRICTION", f"{friction}, 1e7"]
     return without_unused_surfaces([
@@ -35,7 +35,7 @@ def pad():
     """Return a pad whose nodes do not match those of its rail, with friction."""
     rail = mesh("RAIL", np.linspace(0.0, 6.0, 31), [-2.0, -1.0, -0.5, -0.2, 0.0], "CPE4")
     slider = mesh("SLIDER", np.linspace(2.0, 3.5, 10), [0.0, 0.2, 0.5, 1.0], "CPE4", first=2001)
-    return deck([*rail, *slider], 0.2, 1e-3, 0.9, [2001, 2005, 2010])
+    return deck([*rail, *slider], 0.2, 1e-3, 0.9, [2001, 2005, 2010], "1e8")
 
 
 def roller():
@@ -61,7 +61,7 @@ def roller():
     slider = mesh("SLIDER", both([0.9 * x for x in graded(0.7, 5.0)]),
                   [10.0 * y / 9.0 for y in np.linspace(0.0, 1.0, 13)**2 * 9.0], "CPE4", first=20001,
                   to=curved)
-    return deck([*rail, *slider], 0.0, 0.02, 0.5, [20001])
+    return deck([*rail, *slider], 0.0, 0.02, 0.5, [20001], "1e7")
 
 
 DEPTH = {pad: 1e-3, roller: 0.02}   # by which they are pressed
