@@ -8,8 +8,8 @@ import numpy as np
 from manual import Case, Check, check_short
 from pictures import save, subplots
 from physics import material, mesh, nodes_of
-from scipy.integrate import quad
-from scipy.special import k0
+
+from moving_source import face_temperature
 
 TITLE = "Sliding"
 TEXT = """Faces that slide along each other by many spacings of their nodes, with `SLIDING=FINITE`:
@@ -163,13 +163,8 @@ SPEED = 2 * PECLET                         # b = k = rho c = p = 1
 
 
 def jaeger(ahead):
-    """Return the temperature under a band source, from its middle on."""
-    def source(x):
-        argument = PECLET * (ahead - x)
-        return np.exp(-argument) * k0(abs(argument))
-
-    return MU * SPEED / pi * quad(source, -1.0, 1.0, limit=400,
-                                  points=[ahead] if -1.0 < ahead < 1.0 else None)[0]
+    """Return the temperature under the band, from its middle on."""
+    return face_temperature(ahead, 1.0, SPEED, MU * SPEED, 1.0, 1.0)
 
 
 def pad_that_heats_a_rail(count):
@@ -231,9 +226,8 @@ def cases():
         Case("Pad that heats a rail", f"""A soft pad of width 2 b under the pressure p slides along
              a rail with friction {MU}, whose heat all enters the rail: Pe = v b/(2 kappa) = {PECLET:g},
              b = p = k = rho c = 1, after a way of {TRAVEL:g} b. Sides of b/n and increments of half
-             a side.""", """Jaeger (1942): T = q/(pi k) int exp(-v (x - s)/(2 kappa)) K0(v |x -
-             s|/(2 kappa)) ds over the band, q = mu p v, by quadrature. Work of the drive: heat of
-             friction mu P v.""", """1 % of the highest temperature; heat and force 0.1 %.""",
+             a side.""", """Jaeger's band, `tests/reference/moving_source.py`, q = mu p v. Work of the
+             drive: heat of friction mu P v.""", """1 % of the highest temperature; heat and force 0.1 %.""",
              [8, 16], pad_that_heats_a_rail, lambda count: f"n = {count}")]
 
 
