@@ -174,9 +174,27 @@ def bolted_flange():
     return cards + surface("CUT", [1 + 5 * 7 + k for k in range(5)], FACES["TOP"])
 
 
+def rail_pad():
+    """A pad 20 wide and 2 thick on a rail 80 long and 40 deep."""
+    rail_ys = spaced(-40.0, 0.0, 10, 1 / 16)
+    cards = block("RAIL", spaced(-20.0, 60.0, 32), rail_ys, 1, "CPE8", "TOP")
+    return cards + block("PAD", spaced(-10.0, 10.0, 8), [0.0, 0.5, 2.0], 5001, "CPE8", "BOTTOM TOP")
+
+
+def pin_in_hole():
+    """A hub of radii 10 and 14, 40 high."""
+    return block("HUB", spaced(10.0, 14.0, 4), spaced(-40.0, 0.0, 40), 1, "CAX8", "LEFT")
+
+
+def valve_stem():
+    """A stem of radius 4, 40 long, in a bush of radii 4 and 8, 8 long."""
+    cards = block("STEM", spaced(0.0, 4.0, 3, 0.5), spaced(-20.0, 20.0, 25), 1, "CAX8", "RIGHT")
+    return cards + block("BUSH", spaced(3.998, 8.0, 3, 2.0), spaced(-4.0, 4.0, 5), 5001, "CAX8", "LEFT")
+
+
 def main():
     makers = (press_fit, fuel_pellet, brake_pad, cracked_plate, turbine_joint, thermal_cycling, warm_blocks,
-              shrink_shock, brake_disc, bolted_flange)
+              shrink_shock, brake_disc, bolted_flange, rail_pad, pin_in_hole, valve_stem)
     for make in makers:
         cards = [f"** Written by make_meshes.py. {make.__doc__}", *make()]
         assert max(map(len, cards[1:])) <= 80

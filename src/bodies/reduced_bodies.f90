@@ -32,7 +32,6 @@ module reduced_bodies
    private
    public :: reduced_bodies_type
 
-   real(dp), parameter :: same_place = 1.0e-5_dp   !! part of the spacing of contact points
    real(dp), parameter :: far = 1.0e3_dp        !! ratio of stiffnesses that are far apart
 
    !> The reduced bodies.
@@ -76,8 +75,10 @@ module reduced_bodies
       procedure :: views
       procedure :: enter_step
       procedure :: follow_faces
-      procedure :: faces_moved
+      procedure :: displaced_by
       procedure :: wear_to
+      procedure :: movement
+      procedure, private :: couples
       procedure :: number
       procedure :: assemble_steps
       procedure :: assemble
@@ -222,8 +223,7 @@ contains
          has_friction => self%laws%friction%coefficient > 0.0_dp)
          mechanics = solves_mechanics(model%steps(step)%analysis)
          heat = solves_heat(model%steps(step)%analysis)
-         self%is_coupled = heat .and. mechanics .and. (allocated(self%points%heated) .or. &
-            .not. all(is_constant(self%laws%conductance)))
+         self%is_coupled = self%couples(model, step)
          if (mechanics .and. allocated(self%prescribed)) mechanics = &
             any(self%prescribed .neqv. prescribed) .or. any(self%has_friction .neqv. has_friction)
          if (heat .and. allocated(self%held_temperature)) then
@@ -260,6 +260,7 @@ contains
       self%laws = laws_of_step(model, self%points, step)
       if (allocated(self%worn)) self%points%initial_gap = self%points%initial_gap + &
          self%laws%worn_part*self%worn
+      self%is_coupled = self%couples(model, step)
       if (allocated(self%prescribed)) self%has_friction = self%laws%friction%coefficient > 0.0_dp
       call self%number(model, self%prescribed, self%held_temperature, allocated(self%prescribed), &
          allocated(self%held_temperature))
@@ -274,26 +275,54 @@ contains
       self%worn = depth
    end subroutine wear_to
 
-   !> Whether contact points that follow sliding have moved against their masters from where they
-   !> were placed, by more than a part of their spacing that does not count.
-   pure logical function faces_moved(self, displacement)
-      class(reduced_bodies_type), intent(in) :: self !! prepared
+   !> Whether heat depends on the mechanics of a step, at the contact points as they are placed.
+   pure logical function couples(self, model, step)
+      class(reduced_bodies_type), intent(in) :: self !! with the laws of the step
+      type(model_type), intent(in) :: model
+      integer, intent(in) :: step                            !! its index
+
+      associate (analysis => model%steps(step)%analysis)
+         couples = solves_heat(analysis) .and. solves_mechanics(analysis) .and. &
+            (allocated(self%points%heated) .or. .not. all(is_constant(self%laws%conductance)))
+      end associate
+   end function couples
+
+   !> How far contact points that follow sliding have moved against their masters from where they
+   !> were placed, the farthest one, as a part of their spacing.
+   pure real(dp) function displaced_by(self, displacement)
+      class(reduced_bodies_type), intent(in) :: self !! with faces that slide
       real(dp), intent(in) :: displacement(:)                !! (2 nodes) [length]
       real(dp) :: moved(size(self%points%slave))
       integer :: i
 
-      faces_moved = .false.
-      if (.not. allocated(self%faces_at)) return
-      moved = norm2(self%points%relative(displacement - self%faces_at), dim=1)
-      where (self%points%is_beyond) moved = 0.0_dp
+      displaced_by = 0.0_dp
+      moved = self%movement(displacement - self%faces_at)
       do i = 1, size(self%interfaces)
          if (.not. self%interfaces(i)%follows_sliding) cycle
          associate (first => self%points%interface_start(i), edge => self%interfaces(i)%edge)
-            faces_moved = faces_moved .or. any(moved(first:first + size(edge) - 1) > &
-               same_place*edge)
+            displaced_by = max(displaced_by, maxval(moved(first:first + size(edge) - 1)/edge))
          end associate
       end do
-   end function faces_moved
+   end function displaced_by
+
+   !> How far contact points that follow sliding move against their masters; against the first node
+   !> of the master, or its reference node, where nothing is opposite.
+   pure function movement(self, displacement) result(moved)
+      class(reduced_bodies_type), intent(in) :: self !! prepared
+      real(dp), intent(in) :: displacement(:)                !! (2 nodes) [length]
+      real(dp) :: moved(size(self%points%slave))             !! (m) [length]
+      real(dp) :: relative(2, size(moved))
+      integer :: k
+
+      relative = self%points%relative(displacement)
+      do k = 1, size(moved)
+         associate (master => self%points%master(k))
+            if (self%points%is_beyond(k)) relative(:, k) = relative(:, k) - &
+               displacement(2*master - 1:2*master)
+         end associate
+      end do
+      moved = norm2(relative, dim=1)
+   end function movement
 
    !> Numbers the unknowns of the fields that are asked for, for a set of supports.
    subroutine number(self, model, prescribed, held_temperature, mechanics, heat)

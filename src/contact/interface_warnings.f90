@@ -15,6 +15,9 @@ module interface_warnings
    public :: distance_warning, tie_words
 
    real(dp), parameter :: rounding = 1.0e-9_dp   !! relative, of coordinates
+   !> Part of a side by which faces that follow sliding may be drawn with an overlap: a press fit,
+   !> which *CLEARANCE cannot give there.
+   real(dp), parameter :: drawn_fit = 0.01_dp
    !> Part of a face by which a clearance may differ from the gap of the mesh: overlaps of press
    !> fits are far smaller, lengths of another unit far larger. A part of an element's side would
    !> depend on how fine the mesh is.
@@ -84,21 +87,25 @@ contains
    end function offset_warning
 
    !> Names the contact point whose faces overlap most, where that is more than the rounding of
-   !> coordinates.
+   !> coordinates; where they follow sliding, more than a drawn press fit.
    pure function overlap_warning(mesh, points) result(warning)
       type(mesh_type), intent(in) :: mesh
       type(contact_points_type), intent(in) :: points    !! contact points of one interface
       character(:), allocatable :: warning               !! empty where none do
+      real(dp) :: none(size(points%edge))
       integer :: k
 
       warning = ''
       if (all(points%initial_gap >= 0.0_dp)) return   ! without a search of all nodes
-      if (.not. any(-points%initial_gap > rounding*extent_of(mesh%coordinates))) return
+      none = rounding*extent_of(mesh%coordinates)
+      if (points%follows_sliding) none = drawn_fit*points%edge
+      if (all(-points%initial_gap <= none)) return
       k = minloc(points%initial_gap, dim=1)
       warning = 'contact pair '//points%name//': the faces overlap by '// &
          to_text(-points%initial_gap(k))//' at '//nodes_of(mesh, points, k)// &
          ', where the element edge is '//to_text(points%edge(k))//'; they are pressed apart in '// &
-         'the first increment: check the positions of the bodies, or give the overlap by *CLEARANCE'
+         'the first increment: check the positions of the bodies'
+      if (.not. points%follows_sliding) warning = warning//', or give the overlap by *CLEARANCE'
    end function overlap_warning
 
    !> Names the widest gap that the mesh cannot tell from none, where it conducts less than faces

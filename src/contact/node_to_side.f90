@@ -50,7 +50,7 @@ contains
       call find_feet(mesh, slave, master, foot)
       kept = pack([(k, k=1, size(foot))], [(allocated(foot(k)%nodes), k=1, size(foot))])
       allocate (points%slave(0))
-      if (size(kept) < 2) return
+      if (size(kept) == 0) return
       drawn = mesh
       feet%side_nodes = slave%side_nodes
       feet%turned = .not. slave%turned

@@ -31,7 +31,7 @@ module increment_solution
    use text, only: to_text
    implicit none
    private
-   public :: begin_increment, carry_to_faces, load_points, solve_points, recover_fields
+   public :: begin_increment, carry_to_faces, fill_bodies, load_points, solve_points, recover_fields
 
    integer, parameter :: of_heat = 1, of_mechanics = 2   !! places of known loads
 
@@ -449,13 +449,20 @@ contains
          on_tail(contact%link) = next%contact%link
          next%displacement = bodies%equilibrium%recover_kept(bodies%mechanical, data%force, on_tail)
          ! A solution that only places faces that slide needs no more than these.
-         if (allocated(data%force%forces) .and. (data%is_corrected .or. .not. &
-            bodies%faces_moved(next%displacement))) call bodies%equilibrium%pieces%fill( &
-            next%displacement, data%force%forces)
+         if (data%is_corrected .or. .not. allocated(bodies%faces_at)) call fill_bodies(bodies, trial)
          next%stress_temperature = next%temperature
          call remember_slip(bodies, workspace%contact, before, next)
       end associate
    end subroutine recover_fields
+
+   !> Displacements inside of bodies that are divided, from those that were recovered.
+   subroutine fill_bodies(bodies, trial)
+      type(reduced_bodies_type), intent(in) :: bodies
+      type(trial_type), intent(inout) :: trial         !! with those of the nodes that pieces keep
+
+      if (allocated(trial%data%force%forces)) call bodies%equilibrium%pieces%fill( &
+         trial%next%displacement, trial%data%force%forces)
+   end subroutine fill_bodies
 
    !> Adds what the jumps make of the temperatures of welded contacts.
    subroutine add_jumps(bodies, heat, on_tail, temperature)

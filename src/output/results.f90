@@ -72,6 +72,8 @@ module results
       logical, public :: has_contact = .false.                !! whether there is such a file
       integer, allocatable :: element_points(:, :)            !! (8, elements)
       type(string_type), allocatable :: cards(:)              !! card images
+      !> Contact points of every interface where the run began, for what is written once
+      type(contact_points_type), allocatable :: interfaces(:)
       logical :: is_draft = .false.                           !! whether only its end is published
       logical :: is_broken = .false.                          !! whether writing has failed
       integer, public :: accepted = 0                         !! increments appended
@@ -153,6 +155,7 @@ contains
       self%contact_file%content%labels = model%units
       self%element_points = element_points
       self%cards = cards
+      self%interfaces = interfaces
       has = what_is_solved(model, size(interfaces) > 0)
       n = size(interfaces)
       expected = max(1, nint(min(sum(min(planned_increments(model%steps), &
@@ -299,7 +302,7 @@ contains
          self%is_draft)) then
          call publish(self, model, interfaces, run, error)
       else if (waiting_bytes(self) > memory_limit) then
-         call flush_all(self, model, interfaces)
+         call flush_all(self, model)
          call self%file%check(error)
          if (.not. allocated(error)) call self%contact_file%check(error)
       end if
@@ -403,7 +406,7 @@ contains
 
       since = wall_seconds()
       is_first = .not. self%file%in_place
-      call flush_all(self, model, interfaces)
+      call flush_all(self, model)
       until_now = run
       until_now%seconds_write = run%seconds_write + (wall_seconds() - since)
       call write_run(self%file%content, until_now, model)
@@ -432,16 +435,15 @@ contains
       call self%file%note_publishing(since)
    end subroutine publish
 
-   subroutine flush_all(self, model, interfaces)
+   subroutine flush_all(self, model)
       class(results_type), intent(inout) :: self
       type(model_type), intent(in) :: model
-      type(contact_points_type), intent(in) :: interfaces(:)
       logical :: is_new
       integer :: i
 
       call self%file%open(is_new)
       associate (file => self%file%content)
-         if (is_new) call write_heads(self, model, interfaces)
+         if (is_new) call write_heads(self, model)
          call self%fields%flush_grid(file, .not. self%file%in_place, node_sets, cell_sets)
          call self%restarts%flush(file)
          do i = 1, size(self%tables)
@@ -457,19 +459,19 @@ contains
       if (.not. self%has_contact) return
       call self%contact_file%open(is_new)
       associate (file => self%contact_file%content)
-         if (is_new) call self%contact_grid%write_head(file, interfaces, model%mesh%node_number)
+         if (is_new) call self%contact_grid%write_head(file, self%interfaces, &
+            model%mesh%node_number)
          call self%contact_grid%flush_grid(file, .not. self%contact_file%in_place, &
             geometry%name, interface_sets)
       end associate
    end subroutine flush_all
 
-   subroutine write_heads(self, model, interfaces)
+   subroutine write_heads(self, model)
       class(results_type), intent(inout) :: self
       type(model_type), intent(in) :: model
-      type(contact_points_type), intent(in) :: interfaces(:)
       integer :: i
 
-      associate (file => self%file%content)
+      associate (file => self%file%content, interfaces => self%interfaces)
          call self%fields%write_head(file, model, self%element_points)
          call file%create_group('/contact')
          do i = 1, size(self%tables)

@@ -17,13 +17,14 @@ module increment_attempts
    use increment_data, only: stage_type, trial_type
    use increment_records, only: complete_record
    use field_problem, only: solved_loads_type
-   use increment_solution, only: begin_increment, carry_to_faces, recover_fields, solve_points
+   use increment_solution, only: begin_increment, carry_to_faces, fill_bodies, recover_fields, &
+      solve_points
    use kinds, only: dp
    use load_histories, only: step_clock_type
    use model, only: model_type
    use records, only: add_attempts, increment_record_type
-   use reduced_bodies, only: reduced_bodies_type
    use simulation, only: simulation_type
+   use sliding_attempts, only: check_arrivals, check_slip
    use solution_state, only: solution_state_type
    use steps, only: solves_heat, solves_mechanics
    use text, only: to_text
@@ -35,9 +36,9 @@ module increment_attempts
    !> Growth of plastic strains that no equilibrium has, but with forces that rounding makes
    real(dp), parameter :: of_collapse = 1.0_dp
 
-   integer, parameter :: most_placings = 10   !! of contact points that slide, in an increment
+   integer, parameter :: most_turns = 10   !! in which faces that slide or wear find their place
+   real(dp), parameter :: same_place = 1.0e-6_dp     !! part of the spacing of contact points
    real(dp), parameter :: same_wear = 1.0e-9_dp      !! relative change of wear that is none
-   real(dp), parameter :: over_spacing = 1.0e-5_dp   !! slip over a spacing that is rounding
 
    !> The trial solution of an attempt, or of the stage that it has come to, and what it found.
    type, extends(trial_type) :: attempt_type
@@ -194,49 +195,70 @@ contains
       end associate
    end subroutine solve_stage
 
-   !> Solves a stage until contact points of faces that slide lie where its solution has these.
+   !> Solves a stage until contact points of faces that slide lie where its solution has these, and
+   !> faces wear by its slip. Where a turn moves them by a part of what the turn before did, the next
+   !> one would move them by that part again.
    !> Errors: no such place is found, faces slide too far at once; as follow_faces.
    subroutine solve_on_faces(run, model, attempt, error)
       type(simulation_type), intent(inout) :: run
       type(model_type), intent(in) :: model
       type(attempt_type), intent(inout) :: attempt
       type(error_type), allocatable, intent(out) :: error
-      integer :: placing
-      logical :: has_moved, is_worn
+      integer :: turn
+      logical :: is_placed, is_worn
+      real(dp) :: before, moved          ! in the turn before and in this one, of the spacing
 
       if (allocated(attempt%omega_start)) deallocate (attempt%omega_start)
-      do placing = 1, most_placings
+      before = 0.0_dp
+      do turn = 1, most_turns
          call solve_corrected(run, model, attempt, error)
          if (allocated(error)) return
          if (.not. solves_mechanics(model%steps(run%control%step)%analysis)) return
-         has_moved = run%bodies%faces_moved(attempt%next%displacement)
+         moved = 0.0_dp
+         if (allocated(run%bodies%faces_at)) moved = &
+            run%bodies%displaced_by(attempt%next%displacement)
          is_worn = .true.
          if (allocated(run%bodies%worn)) call follow_wear(run, attempt, is_worn)
-         if (is_worn .and. .not. has_moved) then
-            call judge_last(run, model, attempt)
-            if (allocated(run%bodies%worn)) then
-               call wear_faces(run%bodies, attempt%before, attempt%wear_by_pressure, attempt%next)
-               call run%bodies%wear_to(attempt%next%wear)
-            end if
-            if (.not. allocated(run%bodies%faces_at)) return
-            attempt%next%faces_at = run%bodies%faces_at
-            call check_slip(run, model, attempt, error)
+         is_placed = moved <= same_place .or. moved**2 <= same_place*before
+         if (is_placed .and. is_worn) then
+            call end_turns(run, model, attempt, error)
             return
          end if
          attempt%next%contact%slip_origin = attempt%before%contact%slip_origin
          attempt%omega_start = attempt%next%omega
-         if (.not. has_moved) cycle
+         before = moved
+         if (is_placed) cycle
          call run%place_faces(model, attempt%next%displacement, error)
-         if (.not. allocated(error)) call check_arrivals(run%bodies, model, attempt, error)
+         if (.not. allocated(error)) call check_arrivals(run%bodies, model, attempt%before, &
+            attempt%next%displacement, error)
          if (allocated(error)) return
+         call run%loads%move_to(attempt%stage%clock, model)   ! reducing bodies moves them
          call carry_to_faces(run%bodies, attempt%before)
          attempt%next%contact%slip_origin = attempt%before%contact%slip_origin
       end do
       call set_error(error, status_no_convergence, trim(merge( &
          'contact points of faces that slide find no place in ', &
-         'wear and the slip that makes it do not settle in    ', has_moved))//' '// &
-         to_text(most_placings)//' turns')
+         'wear and the slip that makes it do not settle in    ', is_worn))//' '// &
+         to_text(most_turns)//' turns')
    end subroutine solve_on_faces
+
+   !> Completes the last solution of a stage that is solved in turns.
+   subroutine end_turns(run, model, attempt, error)
+      type(simulation_type), intent(inout) :: run
+      type(model_type), intent(in) :: model
+      type(attempt_type), intent(inout) :: attempt
+      type(error_type), allocatable, intent(out) :: error
+
+      call judge_last(run, model, attempt)
+      if (allocated(run%bodies%worn)) then
+         call wear_faces(run%bodies, attempt%before, attempt%wear_by_pressure, attempt%next)
+         call run%bodies%wear_to(attempt%next%wear)
+      end if
+      if (.not. allocated(run%bodies%faces_at)) return
+      if (.not. attempt%data%is_corrected) call fill_bodies(run%bodies, attempt%trial_type)
+      attempt%next%faces_at = run%bodies%faces_at
+      call check_slip(run%bodies, model, attempt%before, attempt%next, attempt%record, error)
+   end subroutine end_turns
 
    !> Finds the gain of the last of several solutions of a stage.
    subroutine judge_last(run, model, attempt)
@@ -275,70 +297,6 @@ contains
          same_wear*maxval(by_pressure))
       if (.not. is_same) attempt%wear_by_pressure = by_pressure
    end subroutine follow_wear
-
-   !> Whether no contact point slips by more than the spacing of nodes: its master is that of the
-   !> end of the increment, and its friction acts along one direction.
-   subroutine check_slip(run, model, attempt, error)
-      type(simulation_type), intent(in) :: run
-      type(model_type), intent(in) :: model
-      type(attempt_type), intent(inout) :: attempt
-      type(error_type), allocatable, intent(out) :: error
-      character(:), allocatable :: words
-      integer :: i, k
-      real(dp) :: slip(size(attempt%next%omega))
-
-      slip = abs(attempt%next%contact%tangential - attempt%before%contact%tangential)
-      where (attempt%next%contact%contact_state == contact_open) slip = 0.0_dp
-      do i = 1, size(run%bodies%interfaces)
-         associate (points => run%bodies%interfaces(i), first => &
-            run%bodies%points%interface_start(i))
-            if (.not. points%follows_sliding) cycle
-            associate (over => slip(first:first + size(points%edge) - 1)*(points%side_nodes - 1)* &
-               points%node_spacings/points%edge)
-               k = maxloc(over, dim=1)
-               if (over(k) <= 1.0_dp + over_spacing) cycle
-               words = points%name//' slips by '//to_text(slip(first - 1 + k))// &
-                  ' in an increment, more than the spacing of nodes, '//to_text(slip(first - 1 + &
-                  k)/over(k))//', at slave node '//to_text(model%mesh%node_number( &
-                  run%bodies%points%slave(first - 1 + k)))
-            end associate
-         end associate
-         if (model%steps(run%control%step)%direct) then
-            call attempt%record%warn('contact pair '//words// &
-               ', which DIRECT does not allow to be cut back')
-         else
-            call set_error(error, status_no_convergence, 'contact pair '//words)
-            return
-         end if
-      end do
-   end subroutine check_slip
-
-   !> Whether no contact point that meets its master comes from behind it.
-   subroutine check_arrivals(bodies, model, attempt, error)
-      type(reduced_bodies_type), intent(in) :: bodies         ! with their faces placed
-      type(model_type), intent(in) :: model
-      type(attempt_type), intent(in) :: attempt
-      type(error_type), allocatable, intent(out) :: error
-      real(dp) :: gap(size(attempt%next%omega))
-      integer :: i, k
-
-      gap = bodies%points%initial_gap - sum(bodies%points%normal* &
-         bodies%points%relative(attempt%next%displacement), dim=1)
-      do i = 1, size(bodies%interfaces)
-         if (.not. bodies%interfaces(i)%follows_sliding) cycle
-         associate (edge => bodies%interfaces(i)%edge, first => bodies%points%interface_start(i))
-            do k = first, first + size(edge) - 1
-               if (gap(k) >= -edge(k - first + 1) .or. attempt%before%contact%contact_state(k) /= &
-                  contact_open) cycle
-               call set_error(error, status_no_convergence, 'contact pair '// &
-                  bodies%interfaces(i)%name//': slave node '//to_text(model%mesh%node_number( &
-                  bodies%points%slave(k)))//' would pass through the master from behind: it is '// &
-                  to_text(-gap(k))//' inside')
-               return
-            end do
-         end associate
-      end do
-   end subroutine check_arrivals
 
    !> Solves the fields of a stage until its corrections are those of its solution.
    subroutine solve_corrected(run, model, attempt, error)

@@ -180,12 +180,12 @@ contains
       type(error_type), allocatable, intent(out) :: error
       real(dp), allocatable :: at(:)                      ! (nodes) [temperature]
 
-      call self%loads%move_to(self%control%instant_at(model, self%control%step_time), model)
       if (allocated(self%state%wear)) call self%bodies%wear_to(self%state%wear)
       if (allocated(self%state%faces_at)) then
          call self%place_faces(model, self%state%faces_at, error)
          if (allocated(error)) return
       end if
+      call self%loads%move_to(self%control%instant_at(model, self%control%step_time), model)
       if (.not. allocated(self%bodies%operators_at)) return
       at = model%initial_temperature
       if (allocated(self%state%operators_at)) at = self%state%operators_at

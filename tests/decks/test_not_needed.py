@@ -34,7 +34,6 @@ CHANGES = {
     "CONTROLS": ("*STEP", "*CONTROLS, RESET\n*STEP", "*CONTROLS"),
     "SPECIFIC HEAT": ("*EXPANSION", "*SPECIFIC HEAT\n460.\n*EXPANSION", "*SPECIFIC HEAT"),
     "type of a pair": (PAIR, PAIR + ", TYPE=SURFACE TO SURFACE", "TYPE"),
-    "small sliding": (PAIR, PAIR + ", SMALL SLIDING", "SMALL SLIDING"),
     "ZERO": ("*EXPANSION", "*EXPANSION, ZERO=300.", "ZERO"),
     "SOLVER": ("*STATIC", "*STATIC, SOLVER=SPOOLES", "SOLVER"),
     "stick slope": ("0.3", "0.3, 1.E5", "stick slope"),

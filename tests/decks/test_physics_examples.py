@@ -20,6 +20,7 @@ import hot_tubes
 import lame
 import tables
 import transient
+from moving_source import face_temperature
 from rods import Rods, gas, power, solve
 
 EXAMPLES = INPUT / "examples"
@@ -317,6 +318,72 @@ def hot_die():
     return {("heat_rate", "CONTACT", "1."): -40.0 * flux,
             ("slave_temperature", "CONTACT", "1."): 120.0 - flux / 0.02,
             ("master_temperature", "CONTACT", "1."): 120.0}
+
+
+def rail_pad():
+    """Jaeger's band after 40 mm, above 20 degrees; friction of 2000 N at 10 mm/s."""
+    steel = 0.045, 0.045 / (7.5e-6 * 480.0)
+    at = {"1007": -10.0, "1013": -5.0, "1019": 0.0, "1025": 5.0}
+    return {("heat_friction", "", "LAST"): 1e-3 * 0.3 * 2000.0 * 10.0,
+            **{("NT", node, "LAST"): 20.0 + face_temperature(ahead, 10.0, 10.0, 0.3, *steel)
+               for node, ahead in at.items()}}
+
+
+PIN = {"radius": 10.0, "outside": 14.0, "overlap": 0.02, "young": 7e4, "poisson": 0.33, "mu": 0.1}
+
+
+def seat_pressure(depth, radius, outside, overlap, young, poisson, mu):
+    """Return the pressure below a depth of seat: Lame's with the axial stress of the friction above
+    it, F' = 2 pi a mu p, p = (E d/a - nu F/A)/(...)."""
+    ratio = (outside**2 + radius**2) / (outside**2 - radius**2) + poisson
+    length = ratio * (outside**2 - radius**2) / (2 * radius * poisson * mu)
+    return young * overlap / radius / ratio * np.exp(-depth / length)
+
+
+def pin_in_hole():
+    """In the middle of the seat, far from the lead-in and from the end of the hub."""
+    return {("pressure", f"SEAT@{40 - depth}", "LAST"): seat_pressure(depth, **PIN)
+            for depth in (18, 14, 10)}
+
+
+def test_the_force_of_a_pin_grows_by_the_friction_of_its_seat(tmp_path):
+    deck = EXAMPLES / "pin_in_hole.inp"
+    assert run("run", "--quiet", deck, "--out", tmp_path).returncode == 0
+    with h5py.File(tmp_path / "pin_in_hole.vtkhdf") as file:
+        depth, force = file["history/time"][()], -file["contact/SEAT/shear_force"][()]
+    low, high = (int(np.argmin(abs(depth - at))) for at in (15.0, 30.0))
+    # The seat begins 0.5 above the end of the hub.
+    seats = np.linspace(depth[low] - 0.5, depth[high] - 0.5, 101)
+    pressures = [seat_pressure(d, **PIN) for d in seats]
+    grown = 2 * pi * PIN["radius"] * PIN["mu"] * np.mean(pressures) * (seats[-1] - seats[0])
+    assert force[high] - force[low] == pytest.approx(grown, rel=0.01)
+
+
+def valve_stem():
+    """Lame's pressure of the overlap."""
+    pressure = lame.press_fit(0.0, 4.0, 8.0, (2.1e5, 0.3), (1.1e5, 0.34), 0.002, "stress")
+    return {("pressure", "GUIDE@4.", "1."): pressure,
+            ("normal_force", "GUIDE", "1."): pressure * 2 * pi * 4.0 * 8.0}
+
+
+def test_the_temperatures_of_a_valve_stem_repeat(tmp_path):
+    """And what comes in over a cycle goes out."""
+    assert run("run", "--quiet", EXAMPLES / "valve_stem.inp", "--out", tmp_path).returncode == 0
+    with h5py.File(tmp_path / "valve_stem.vtkhdf") as file:
+        n = len(file["VTKHDF/PointData/node_id"])
+        temperature = file["VTKHDF/PointData/temperature"][()].reshape(-1, n)
+        history = {k: file[f"history/{k}"][()] for k in ("time", "heat_in", "heat_out",
+                                                         "heat_friction")}
+    cycle = round(4.0 / 0.4)
+    times = history["time"]
+    assert times[-1] - times[-1 - cycle] == pytest.approx(4.0)
+    assert 5 * cycle < len(times) < 31 * cycle
+    change = abs(temperature[-1] - temperature[-1 - cycle]).max()
+    moved = abs(temperature[-1] - temperature[-1 - cycle // 2]).max()
+    assert change < 0.2 < 3.0 < moved
+    mean = {k: np.mean(v[-cycle:]) for k, v in history.items()}
+    assert mean["heat_friction"] > 0.5
+    assert mean["heat_in"] + mean["heat_friction"] == pytest.approx(mean["heat_out"], rel=0.02)
 
 
 @pytest.mark.parametrize("name", NAMES)

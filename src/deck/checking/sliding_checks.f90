@@ -1,9 +1,11 @@
 !> What SLIDING=FINITE does not go with, and decks that may mean it.
 module sliding_checks
+   use contact_definitions, only: contact_definition_type
    use deck_context, only: deck_type
    use deck_source, only: place_type
    use deck_structure, only: cards_of
    use heat_equation, only: heat_equation_type
+   use mesh, only: mesh_type
    use model, only: model_type
    use text, only: to_text
    implicit none
@@ -60,9 +62,8 @@ contains
          if (contact%adjusts) words = 'ADJUST=: gaps are those of the displaced faces; move the '// &
             'nodes instead'
          do k = 1, size(model%ties)
-            if (any([contact%slave, contact%master] == model%ties(k)%faces%slave) .or. &
-               any([contact%slave, contact%master] == model%ties(k)%faces%master)) words = &
-               'tie '//model%ties(k)%faces%name//' of the same surface: what is tied cannot slide'
+            if (share_a_face(model%mesh, contact, model%ties(k)%faces)) words = &
+               'tie '//model%ties(k)%faces%name//' of the same face: what is tied cannot slide'
          end do
       end associate
       do s = 1, size(model%steps)
@@ -83,5 +84,29 @@ contains
          end associate
       end do
    end function what_is_beside
+
+   !> The faces of both surfaces.
+   pure function faces_of(mesh, definition) result(faces)
+      type(mesh_type), intent(in) :: mesh
+      type(contact_definition_type), intent(in) :: definition
+      integer, allocatable :: faces(:, :)        ! (2, faces) element, side
+
+      associate (of_slave => mesh%surfaces(definition%slave)%faces, &
+         of_master => mesh%surfaces(definition%master)%faces)
+         faces = reshape([of_slave, of_master], [2, size(of_slave, 2) + size(of_master, 2)])
+      end associate
+   end function faces_of
+
+   !> Whether a side of an element belongs to the faces of two definitions.
+   pure logical function share_a_face(mesh, one, other)
+      type(mesh_type), intent(in) :: mesh
+      type(contact_definition_type), intent(in) :: one, other
+      integer :: k
+
+      associate (mine => faces_of(mesh, one), others => faces_of(mesh, other))
+         share_a_face = any([(any(mine(1, k) == others(1, :) .and. mine(2, k) == others(2, :)), &
+            k=1, size(mine, 2))])
+      end associate
+   end function share_a_face
 
 end module sliding_checks

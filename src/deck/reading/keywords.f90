@@ -117,10 +117,9 @@ module keywords
       keyword_type('SURFACE BEHAVIOR', in_model, 0, many, &
          'PRESSURE-OVERCLOSURE=/~AUGMENTED LAGRANGE/~PENALTY?/~DIRECT'), &
       keyword_type('CONTACT PAIR', in_model, 1, many, &
-         'INTERACTION=/NAME=/PAIRING=/SLIDING=/ADJUST=/~TYPE=/~SMALL SLIDING/~NO THICKNESS/'// &
+         'INTERACTION=/NAME=/PAIRING=/SLIDING=/SMALL SLIDING/ADJUST=/~TYPE=/~NO THICKNESS/'// &
          '~CPSET=/~GEOMETRIC CORRECTION=/~HCRIT=/~MECHANICAL CONSTRAINT=/~EXTENSION ZONE=/'// &
-         '~SMOOTH=/'// &
-         '~TRACKING=/~SUPPLEMENTARY CONSTRAINTS='), &
+         '~SMOOTH=/~TRACKING=/~SUPPLEMENTARY CONSTRAINTS='), &
       keyword_type('TIE', in_model, 1, many, &
          'NAME=/POSITION TOLERANCE=/ADJUST=/~TYPE=/~NO ROTATION/~NO THICKNESS'), &
       keyword_type('CLEARANCE', in_model, 0, 0, 'MASTER=/SLAVE=/VALUE='), &
