@@ -10,7 +10,7 @@ module quantity_types
       of_points, of_elements, of_sections
    public :: needs_nothing, needs_temperature, needs_heat, needs_mechanics, needs_coupling
    public :: needs_storage, needs_dilatation, needs_friction_heat, needs_stability, needs_branch, &
-      needs_sections, needs_plasticity, needs_creep, needs_laws, last_need
+      needs_sections, needs_plasticity, needs_creep, needs_laws, needs_melting, last_need
 
    integer, parameter :: name_length = 25
 
@@ -41,7 +41,8 @@ module quantity_types
    integer, parameter :: needs_plasticity = 11   !! mechanics and *PLASTIC
    integer, parameter :: needs_creep = 12        !! mechanics and *CREEP
    integer, parameter :: needs_laws = 13         !! one of both
-   integer, parameter :: last_need = needs_laws
+   integer, parameter :: needs_melting = 14      !! heat and *LATENT HEAT
+   integer, parameter :: last_need = needs_melting
 
    type :: quantity_type
       character(name_length) :: name           !! of its dataset, in *VERIFY and in tables of errors
