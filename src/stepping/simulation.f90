@@ -84,6 +84,8 @@ contains
       call self%loads%prepare(model)
       self%state = make_initial_state(model, self%bodies)
       call self%corrections%prepare(model, self%state%forces_beyond)
+      if (any(model%materials%law%annealing > 0)) call self%corrections%points%start_history( &
+         model%mesh, model%initial_temperature, self%state%history)
       self%seconds%assemble = (wall_seconds() - since)
       call measure_steps(model, self%bodies%points, self%loads, self%state, self%sizes, error)
       if (.not. allocated(error)) call enter_step(self, model)

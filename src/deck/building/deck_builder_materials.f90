@@ -69,7 +69,8 @@ contains
                else if (len(card%meant) == 0) then
                   call deck%missing(card%place, '*LATENT HEAT has no *MATERIAL before it')
                end if
-            case ('PLASTIC', 'CYCLIC HARDENING', 'CREEP', 'INELASTIC HEAT FRACTION')
+            case ('PLASTIC', 'CYCLIC HARDENING', 'CREEP', 'INELASTIC HEAT FRACTION', &
+               'ANNEAL TEMPERATURE')
                if (n == 0) then
                   if (len(card%meant) == 0) call deck%missing(card%place, '*'//card%name// &
                      ' has no *MATERIAL before it')

@@ -70,7 +70,7 @@ module keywords
    !> How the keywords end that ask for output.
    character(*), parameter :: output_words(3) = [character(6) :: 'OUTPUT', 'FILE', 'PRINT']
 
-   type(keyword_type), parameter :: known_keywords(95) = [ &
+   type(keyword_type), parameter :: known_keywords(96) = [ &
       keyword_type('HEADING', in_model, 0, many, ''), &
       keyword_type('OPTIONS', in_model, 0, 0, 'WIDTH=/UNITS=/LOAD=/PLANE=/ORDER=/ERRORS='), &
       keyword_type('PHYSICAL CONSTANTS', in_model, 0, 0, &
@@ -100,6 +100,7 @@ module keywords
       keyword_type('CYCLIC HARDENING', in_model, 1, many, ''), &
       keyword_type('CREEP', in_model, 1, many, 'LAW='), &
       keyword_type('INELASTIC HEAT FRACTION', in_model, 0, 1, ''), &
+      keyword_type('ANNEAL TEMPERATURE', in_model, 1, 1, ''), &
       keyword_type('ORIENTATION', in_model, 1, 2, 'NAME=/SYSTEM='), &
       keyword_type('SOLID SECTION', in_model, 0, 1, &
          'ELSET=/MATERIAL=/ORIENTATION=/~OFFSET=/~CONTROLS='), &
@@ -226,7 +227,7 @@ module keywords
          'heat leaves sides by *FILM and *DFLUX; only contact gaps radiate'), &
       advice_type(refused, 'ELASTIC', 'HYPERELASTIC/ANISOTROPIC HYPERELASTIC/HYPERFOAM/'// &
          'HYPOELASTIC/POROUS ELASTIC/DEFORMATION PLASTICITY/USER MATERIAL', laws), &
-      advice_type(refused, '', 'SWELLING/ANNEAL TEMPERATURE/HARDENING/VISCOELASTIC/RATE '// &
+      advice_type(refused, '', 'SWELLING/HARDENING/VISCOELASTIC/RATE '// &
          'DEPENDENT/POTENTIAL/UNIAXIAL TEST DATA/DRUCKER PRAGER/DRUCKER PRAGER HARDENING/'// &
          'DRUCKER PRAGER CREEP/MOHR COULOMB/MOHR COULOMB HARDENING/CAP PLASTICITY/'// &
          'CAP HARDENING', laws), &
