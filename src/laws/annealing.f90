@@ -4,7 +4,9 @@
 !> that thermoelasticity has where the material becomes solid, and by the temperature of the point.
 !> Above the annealing temperature that strain follows the deformation, and what was plastic or crept
 !> is 0. It is taken where the temperature passes, strains and temperatures being straight in an
-!> increment: the part of it that lies below alone makes stress.
+!> increment: the part of it that lies below alone makes stress. Where none does, a thousandth makes
+!> a drag, so that a melt that nothing holds stays where it is; no stress of it is left once the
+!> increment is over.
 module annealing
    use kinds, only: dp
    use material_laws, only: law_interval_type, law_points_type, material_law_type
@@ -12,6 +14,7 @@ module annealing
    private
    public :: annealed_law
 
+   real(dp), parameter :: drag = 1.0e-3_dp   !! part of an increment that a melt resists
    integer, parameter :: numbers = 5   !! of the history: strain xx, yy, zz, the angle xy, temperature
 
 contains
@@ -37,14 +40,17 @@ contains
       type(law_points_type), intent(inout) :: points
       type(law_interval_type), intent(in) :: interval
       real(dp), intent(inout) :: history(:, :)
+      type(law_points_type) :: melt
       real(dp) :: elastic(4), part(size(points%temperature))
       integer :: g
 
       ! Part of the increment in which a point is solid.
       part = 1.0_dp
+      melt = points
       do g = 1, points%count
          associate (free => history(law%annealing:law%annealing + 3, g), here => &
             points%temperature(g), before => history(law%annealing + 4, g))
+            melt%stress(g, :) = points%stress(g, :) - matmul(points%tangent(:, :, g), free)
             if (max(before, here) >= law%anneal_temperature) then
                call forget(law, history(:, g))
                elastic = strain_of(points%tangent(:, :, g), points%stress(g, :))
@@ -61,7 +67,10 @@ contains
          history(:law%annealing - 1, :))
       do g = 1, points%count
          points%tangent(:, :, g) = part(g)*points%tangent(:, :, g)
-         if (part(g) <= 0.0_dp) points%stress(g, :) = 0.0_dp
+         if (part(g) > 0.0_dp) cycle
+         points%stress(g, :) = drag*melt%stress(g, :)
+         points%tangent(:, :, g) = drag*melt%tangent(:, :, g)
+         call forget(law, history(:, g))
       end do
    end subroutine respond
 
