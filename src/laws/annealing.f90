@@ -14,7 +14,7 @@ module annealing
    private
    public :: annealed_law
 
-   real(dp), parameter :: drag = 1.0e-3_dp   !! part of an increment that a melt resists
+   real(dp), parameter :: drag = 1.0e-2_dp   !! part of an increment that a melt resists
    integer, parameter :: numbers = 5   !! of the history: strain xx, yy, zz, the angle xy, temperature
 
 contains
