@@ -59,9 +59,9 @@ def neumann(level):
     """Return a bar that is above the liquidus by half of the jump, k = 2 when solid, 1 molten."""
     root = neumann_root(2.0, 0.5, 1.0)
     time = 1.0 / (4 * root**2 * 2.0)
-    count = 20 * level
+    count = 40 * level
     solidus = 1.0 - INTERVAL / 4 / level
-    ways = [(2.0, solidus), (1.0, 1.0)]
+    ways = [(2.0, 1.0 - INTERVAL / level), (1.0, 1.0)]
     melt = with_latent(material("MELT", None, conductivity=ways, density=1.0, specific_heat=1.0),
                        1.0, solidus, 1.0)
     rest = material("REST", None, conductivity=1.0, density=1.0, specific_heat=1.0)
@@ -121,8 +121,8 @@ def cases():
           for number, root in STEFAN.items()),
         Case("Neumann's front",
              """A long bar at 1.5, rho c = 1, k = 2 when solid and 1 when molten, liquidus and latent
-             heat 1, one end at 0 from time 0 on. Only the first fifth melts, the rest is as the
-             melt, so that the time is known at which the front is at x = 1. 100 elements, 140
+             heat 1, one end at 0 from time 0 on; k changes over the interval above. Only the first fifth melts, the rest is as the
+             melt, so that the time is known at which the front is at x = 1. 200 elements, 280
              increments and an interval of a quarter of that above, as the melt behind it is warm
              and its solidus follows its liquidus, and finer.""", make=neumann, **shared),
         Case("A bar that becomes solid between walls",
