@@ -312,7 +312,8 @@ contains
       type(solution_state_type), intent(in) :: before        !! state at the start of the stage
       type(solution_state_type), intent(in) :: at            !! the solution
 
-      if (self%asks_operators) self%renewed_at = self%passes
+      ! Where a front passed on, they are of another state.
+      self%renewed_at = merge(self%passes, 0, self%asks_operators)
       self%slow_passes = 0
       call start_mixing(self)
       deallocate (self%scale)

@@ -59,7 +59,7 @@ def neumann(level):
     """Return a bar that is above the liquidus by half of the jump, k = 2 when solid, 1 molten."""
     root = neumann_root(2.0, 0.5, 1.0)
     time = 1.0 / (4 * root**2 * 2.0)
-    count = 40 * level
+    count = 20 * level
     solidus = 1.0 - INTERVAL / 4 / level
     ways = [(2.0, 1.0 - INTERVAL / level), (1.0, 1.0)]
     melt = with_latent(material("MELT", None, conductivity=ways, density=1.0, specific_heat=1.0),
@@ -122,9 +122,10 @@ def cases():
         Case("Neumann's front",
              """A long bar at 1.5, rho c = 1, k = 2 when solid and 1 when molten, liquidus and latent
              heat 1, one end at 0 from time 0 on; k changes over the interval above. Only the first fifth melts, the rest is as the
-             melt, so that the time is known at which the front is at x = 1. 200 elements, 280
+             melt, so that the time is known at which the front is at x = 1. 100 elements, 140
              increments and an interval of a quarter of that above, as the melt behind it is warm
-             and its solidus follows its liquidus, and finer.""", make=neumann, **shared),
+             and its solidus follows its liquidus, twice as fine, and finer.""",
+             make=neumann, **{**shared, "meshes": [2, 4]}),
         Case("A bar that becomes solid between walls",
              """A bar in plane stress, E = 200e3, alpha = 1e-5, yield stress 300, which hardens by
              1000, annealing temperature 500. It cools from 700 to 450 and 100, is melted at 700 and
@@ -137,7 +138,7 @@ def draw(runs, path):
     """Draw the errors of the fronts."""
     figure, panels = subplots(2, 2, height=6.0)
     fronts = [(title, solved) for title, solved in runs.items()
-              if solved[0].mesh == 1 and "front" in title]
+              if "front" in title]
     for axes, (title, solved) in zip(panels.flat, fronts, strict=True):
         errors_panel(axes, solved, title, "fineness of mesh, increments and interval")
     save(figure, path)
