@@ -212,7 +212,7 @@ contains
       end if
       if (allocated(self%inelastic_strain)) call add_strains(self, model, lines)
       if (allocated(self%solid_time)) call append(lines, summary_line('all solid at', &
-         self%solid_time, mark_of(reason_inside_step(model)), unit_label('time', model%units), ''))
+         self%solid_time, mark_of(reason_inside_step(model)), '-', ''))
       if (allocated(self%cycle)) call append(lines, self%cycle)
       if (self%stability /= '') call append(lines, self%stability)
    end subroutine add_lines
