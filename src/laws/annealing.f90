@@ -2,11 +2,11 @@
 !>
 !> The history of the law of the solid is followed by the strain without stress, the elastic strain
 !> that thermoelasticity has where the material becomes solid, and by the temperature of the point.
-!> Above the annealing temperature that strain follows the deformation, and what was plastic or crept
-!> is 0. It is taken where the temperature passes, strains and temperatures being straight in an
-!> increment: the part of it that lies below alone makes stress. Where none does, a thousandth makes
-!> a drag, so that a melt that nothing holds stays where it is; no stress of it is left once the
-!> increment is over.
+!> Above the annealing temperature that strain follows the deformation, and what was plastic or
+!> crept is 0. It is taken where the temperature passes, strains and temperatures being straight in
+!> an increment: the part of it that lies below alone makes stress. Where none does, a hundredth
+!> makes a drag, so that a melt that nothing holds stays where it is; no stress of it is left once
+!> the increment is over.
 module annealing
    use kinds, only: dp
    use material_laws, only: law_interval_type, law_points_type, material_law_type
@@ -15,7 +15,7 @@ module annealing
    public :: annealed_law
 
    real(dp), parameter :: drag = 1.0e-2_dp   !! part of an increment that a melt resists
-   integer, parameter :: numbers = 5   !! of the history: strain xx, yy, zz, the angle xy, temperature
+   integer, parameter :: numbers = 5   !! of the history: xx, yy, zz, the angle xy, temperature
 
 contains
 

@@ -230,8 +230,8 @@ contains
    end function solid_fraction
 
    !> Where a temperature gets to with a latent heat that it has not taken up: with rho c of the
-   !> first rows, the temperature that has the heat of both, and the latent heat that this is within,
-   !> or 0. An interval may be as narrow as temperatures round, so the heat says which.
+   !> first rows, the temperature that has the heat of both, and the latent heat that this is
+   !> within, or 0. An interval may be as narrow as temperatures round, so the heat says which.
    pure subroutine melted_to(material, given, latent, temperature, row)
       type(material_type), intent(in) :: material       !! that melts
       real(dp), intent(in) :: given                     !! [temperature]

@@ -3,8 +3,8 @@
 module field_quantities
    use kinds, only: dp
    use quantity_types, only: needs_creep, needs_heat, needs_laws, needs_mechanics, &
-      needs_melting, needs_plasticity, needs_stability, needs_temperature, of_bodies, of_elements, of_nodes, &
-      of_points, quantity_type
+      needs_melting, needs_plasticity, needs_stability, needs_temperature, of_bodies, of_elements, &
+      of_nodes, of_points, quantity_type
    use records, only: field_record_type
    implicit none
    private

@@ -38,7 +38,7 @@ module melting
    type :: melting_type
       type(melting_node_type), allocatable, private :: nodes(:)
       logical :: acts = .false.          !! whether there are any in steps that store heat
-      logical :: changes_rows = .false.  !! whether nodes entered or left an interval in the last move
+      logical :: changes_rows = .false.  !! whether the last move led into or out of intervals
       logical :: jumps = .false.         !! whether any passed over a solidus or liquidus
    contains
       procedure :: prepare

@@ -22,7 +22,7 @@ contains
       type(keyword_card_type), intent(in) :: card
       type(deck_type), intent(inout) :: deck
       type(material_type), intent(inout) :: material
-      real(dp) :: values(3, size(card%data)), width
+      real(dp) :: above, values(3, size(card%data)), width
       integer :: errors, i
       logical :: valid
 
@@ -37,9 +37,10 @@ contains
          return
       end do
       if (material%specific_heat <= 0.0_dp) return
+      above = -huge(above)
       do i = 1, size(values, 2)
-         if (values(3, i) < values(2, i)) call deck%error(card%data(i)%place(3), 'the liquidus, '// &
-            to_text(values(3, i))//', is below the solidus, '//to_text(values(2, i)))
+         if (values(3, i) < values(2, i)) call deck%error(card%data(i)%place(3), 'the '// &
+            'liquidus, '//to_text(values(3, i))//', is below the solidus, '//to_text(values(2, i)))
          if (deck%error_count() > errors) return
          width = least_interval*values(1, i)/material%specific_heat
          if (values(3, i) - values(2, i) < width) then
@@ -48,10 +49,10 @@ contains
                to_text(values(2, i))//' to '//to_text(values(3, i))//': the smallest interval '// &
                'is 1e-4 of latent over specific heat')
          end if
-         if (i == 1) cycle
-         if (values(2, i) < values(3, i - 1)) call deck%error(card%data(i)%place(2), 'rows must '// &
-            'ascend and not overlap: melting from '//to_text(values(2, i))//' on follows a '// &
-            'liquidus of '//to_text(values(3, i - 1)))
+         if (values(2, i) < above) call deck%error(card%data(i)%place(2), 'rows must ascend and '// &
+            'not overlap: melting from '//to_text(values(2, i))//' on follows a liquidus of '// &
+            to_text(above))
+         above = values(3, i)
       end do
       if (deck%error_count() == errors) call set_latent_heat(material, values(1, :), &
          values(2, :), values(3, :))
