@@ -201,8 +201,8 @@ contains
    end function material_words
 
    !> Plasticity, creep, annealing and melting of a material; empty without them. Creep is told as
-   !> the strain that a five-hundredth of the shear modulus G makes in a time of 1, which shows wrong
-   !> units.
+   !> the strain that a five-hundredth of the shear modulus G makes in a time of 1, which shows
+   !> wrong units.
    pure function law_words(material) result(words)
       type(material_type), intent(in) :: material
       character(:), allocatable :: words

@@ -8,15 +8,14 @@
 !> the liquidus thus stops in the interval until it has given off its latent heat. C has the slopes
 !> at T': within the interval that of the content, else none.
 !>
-!> C. R. Swaminathan, V. R. Voller, Metall. Trans. B 23 (1992) 651; lumping: E. Hinton, T. Rock,
-!> O. C. Zienkiewicz, Earthquake Eng. Struct. Dyn. 4 (1976) 245.
+!> C. R. Swaminathan, V. R. Voller, Metall. Trans. B 23 (1992) 651.
 module melting
-   use element_conduction, only: capacity_matrix
    use element_kinds, only: element_node_count
    use kinds, only: dp
    use materials, only: heat_capacity, latent_content, melted_to, melting_row, melts, solid_fraction
    use mesh, only: nodes_per_element
    use model, only: model_type
+   use thermal_matrix, only: lumped_volumes
    implicit none
    private
    public :: melting_type, solid_fractions
@@ -58,7 +57,7 @@ contains
       class(melting_type), intent(inout) :: self
       type(model_type), intent(in) :: model
       type(melting_node_type) :: node
-      real(dp) :: c(nodes_per_element, nodes_per_element), lumped(nodes_per_element)
+      real(dp) :: lumped(nodes_per_element)
       integer :: e, i, n, q
 
       self%acts = any(model%steps%is_transient) .and. any(melts(model%materials))
@@ -71,12 +70,7 @@ contains
             node%material = sections(mesh%element_section(e))%material
             if (.not. melts(model%materials(node%material))) cycle
             n = element_node_count(mesh%element_kind(e))
-            c(:n, :n) = capacity_matrix(mesh%element_kind(e), mesh%element_plane(e), &
-               mesh%coordinates(:, mesh%element_nodes(:n, e)), &
-               sections(mesh%element_section(e))%thickness)
-            ! In the proportions of the diagonal, since row sums are negative at corners.
-            lumped(:n) = [(c(q, q), q=1, n)]
-            lumped(:n) = lumped(:n)*(sum(c(:n, :n))/sum(lumped(:n)))
+            lumped = lumped_volumes(mesh, sections, e)
             do q = 1, n
                i = i + 1
                node%node = mesh%element_nodes(q, e)

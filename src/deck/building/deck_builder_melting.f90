@@ -49,9 +49,9 @@ contains
                to_text(values(2, i))//' to '//to_text(values(3, i))//': the smallest interval '// &
                'is 1e-4 of latent over specific heat')
          end if
-         if (values(2, i) < above) call deck%error(card%data(i)%place(2), 'rows must ascend and '// &
-            'not overlap: melting from '//to_text(values(2, i))//' on follows a liquidus of '// &
-            to_text(above))
+         if (values(2, i) < above) call deck%error(card%data(i)%place(2), 'rows must ascend '// &
+            'and not overlap: melting from '//to_text(values(2, i))//' on follows a liquidus '// &
+            'of '//to_text(above))
          above = values(3, i)
       end do
       if (deck%error_count() == errors) call set_latent_heat(material, values(1, :), &
