@@ -98,6 +98,20 @@ def test_stress_begins_below_the_annealing_temperature(tmp_path):
     follows(tmp_path, make, 400.0, 550.0)
 
 
+@pytest.mark.parametrize("scheme", SCHEMES)
+def test_a_solid_begins_within_the_stages_of_an_increment(tmp_path, scheme):
+    """Cooled evenly by 600, solid from 430 on, which no increment and no stage ends at."""
+    given = material("BODY", (200e3, 0.3), expansion=1e-5, conductivity=1.0, density=2.0,
+                     specific_heat=0.5)
+    cards = [f"*THERMAL SCHEME, TYPE={scheme}", *mesh("BODY", [0.0, 1.0], [0.0, 1.0], "CPS4"),
+             *given[:-1], "*ANNEAL TEMPERATURE", "430.", given[-1], *start(700.0),
+             *step("*BOUNDARY", "BODY.LEFT, 1", "BODY.RIGHT, 1", "BODY.BOTTOM, 2", "*DFLUX",
+                   "BODY, BF, -600.", analysis="*COUPLED TEMPERATURE-DISPLACEMENT, DIRECT",
+                   times="0.25, 1.")]
+    judge(tmp_path, cards, [("NT", "BODY", "LAST", 100.0, 1e-9),
+                            ("S11", "BODY", "LAST", 660.0, 1e-8)])
+
+
 def casting(*cards):
     """Return a square that solidifies between walls, whose stress follows its temperatures."""
     return [*melting(["1., 0.9, 1."], size=4, elastic=[(1e3, 0.3, 0.0), (500.0, 0.3, 1.0)],
