@@ -39,6 +39,7 @@ TITLES = {
     "radial": (r"Radial stress $\sigma_r$", "stress"),
     "hoop": (r"Hoop stress $\sigma_\theta$", "stress"),
     "plastic_strain": (r"Equivalent plastic strain $\varepsilon_\mathrm{p}$", None),
+    "solid_fraction": ("Solid fraction", None),
     "creep_strain": (r"Equivalent creep strain $\varepsilon_\mathrm{c}$", None),
     "flux_x": ("Heat flux $q_x$", "flux"),
     "flux_y": ("Heat flux $q_y$", "flux"),
@@ -90,6 +91,7 @@ def draw_row(result, row, options):
             draw_points(axes, grid, fine, values, (quantity, scale, options.colours), inside)
         draw_lines(axes, result.cells, moved)
         outline_plastic_zone(axes, grid, fine, result.point_data("equivalent_plastic_strain", step))
+        draw_front(axes, grid, fine, result.point_data("solid_fraction", step))
         title = result.units.label(*TITLES[quantity])
         if figure.axes[0].get_subplotspec().get_gridspec().ncols > 1:  # room for symbol and unit
             title = re.sub(r" (?=[$(]|of )", "\n", title, count=1)
@@ -110,6 +112,13 @@ def outline_plastic_zone(axes, grid, fine, strain):
         values = np.nan_to_num(fine.values(strain.astype(float)))
         axes.tricontour(grid, values, levels=[0.01 * np.nanmax(strain)], colors="black",
                         linewidths=1.0)
+
+
+def draw_front(axes, grid, fine, fraction):
+    """Draw the front of solidification, where the solid fraction is a half."""
+    if fraction is not None and np.nanmin(fraction) < 0.5 < np.nanmax(fraction):
+        axes.tricontour(grid, fine.values(fraction.astype(float)), levels=[0.5], colors="black",
+                        linewidths=1.4, linestyles="dashed")
 
 
 def mode_factor(cells, displacement):

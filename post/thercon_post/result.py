@@ -36,6 +36,7 @@ FIELD_SOURCES = {
     "hoop": ("hoop_stress", None),
     "plastic_strain": ("equivalent_plastic_strain", None),
     "creep_strain": ("equivalent_creep_strain", None),
+    "solid_fraction": ("solid_fraction", None),
     "flux_x": ("heat_flux", 0),
     "flux_y": ("heat_flux", 1),
     "stress_error": ("stress_error", None),

@@ -82,8 +82,11 @@ contains
       self%is_bound = is_kept
       self%is_prescribed = is_prescribed
       self%version = self%version + 1
-      piece = divided_bodies(self%graph, is_kept, merge(most_around, size(is_kept), &
-         self%cuts_bodies()))
+      if (self%cuts_bodies()) then
+         piece = divided_bodies(self%graph, is_kept)
+      else
+         piece = whole_bodies(self%graph, is_kept)
+      end if
       self%piece = [(spread(piece(i), 1, components), i=1, size(piece))]
       where (is_prescribed) self%piece = fixed
    end subroutine divide
@@ -103,10 +106,9 @@ contains
    end function is_tail
 
    !> The piece inside of which each node is, 0 for kept ones.
-   pure function divided_bodies(graph, is_bound, most_around) result(piece)
+   pure function divided_bodies(graph, is_bound) result(piece)
       type(sparse_matrix_type), intent(in) :: graph   !! (nodes, nodes) joined by elements
       logical, intent(in) :: is_bound(:)              !! (nodes)
-      integer, intent(in) :: most_around              !! kept nodes around a piece, about
       integer, allocatable :: piece(:)                !! (nodes)
       integer :: around(size(is_bound))               ! the last piece that a kept node is around
       integer, allocatable :: order(:)
@@ -145,6 +147,35 @@ contains
          end do
       end do
    end function divided_bodies
+
+   !> The same of bodies that are not cut: nodes that are joined without a kept one between them are
+   !> of one piece.
+   pure function whole_bodies(graph, is_bound) result(piece)
+      type(sparse_matrix_type), intent(in) :: graph
+      logical, intent(in) :: is_bound(:)              ! (nodes)
+      integer, allocatable :: piece(:)                ! (nodes)
+      integer :: first, i, k, last, of_piece(size(is_bound))
+
+      allocate (piece(size(is_bound)), source=0)
+      do i = 1, size(piece)
+         if (is_bound(i) .or. piece(i) > 0) cycle
+         piece(i) = maxval(piece) + 1
+         of_piece(1) = i
+         first = 1
+         last = 1
+         do while (first <= last)
+            do k = graph%row_start(of_piece(first)), graph%row_start(of_piece(first) + 1) - 1
+               associate (other => graph%column(k))
+                  if (is_bound(other) .or. piece(other) > 0) cycle
+                  piece(other) = piece(i)
+                  last = last + 1
+                  of_piece(last) = other
+               end associate
+            end do
+            first = first + 1
+         end do
+      end do
+   end function whole_bodies
 
    !> The free nodes, each part of the graph from one of its ends on.
    pure function in_fronts(graph, is_free) result(order)

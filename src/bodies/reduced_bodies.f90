@@ -15,7 +15,7 @@ module reduced_bodies
    use field_problem, only: field_problem_type
    use kinds, only: dp
    use loads, only: loads_type
-   use materials, only: follows_temperature, heat_capacity, heat_capacity_at, varies
+   use materials, only: follows_temperature, heat_capacity, heat_capacity_at, melts, varies
    use model, only: model_type
    use held_points, only: held_directions
    use point_materials, only: point_materials_type
@@ -47,6 +47,9 @@ module reduced_bodies
       type(field_problem_type) :: mechanical                  !! equilibrium, (2.4)
       !> C of (1.2); without values where no step needs it [energy/temperature]
       type(sparse_matrix_type) :: capacity
+      !> C without melting, and the diagonal that this adds (nodes); unallocated where nothing melts
+      type(sparse_matrix_type) :: sensible
+      real(dp), allocatable :: melting(:)
       type(dilatation_type) :: dilatation                     !! heat that strains take up
       type(sparse_matrix_type) :: thermal_load                !! nodal forces per nodal temperature
       ! What springs and trusses have of the matrices of equilibrium; without values for none.
@@ -87,6 +90,7 @@ module reduced_bodies
       procedure :: has_operators_of
       procedure :: evened
       procedure :: largest_displacement
+      procedure :: set_melting
       procedure :: reduce
    end type reduced_bodies_type
 
@@ -456,6 +460,8 @@ contains
          if (with_heat) call self%thermal%set_matrix(assemble_conduction(mesh, sections, points))
          if (any(model%steps%is_transient .or. model%steps%stability_frequency > 0)) then
             self%capacity = assemble_capacity(mesh, sections, capacities(model, temperature))
+            if (any(melts(materials))) self%sensible = self%capacity
+            if (allocated(self%melting)) call add_melting(self)
          end if
       end associate
    end subroutine form_operators
@@ -489,6 +495,33 @@ contains
       call self%form_operators(model, temperature, allocated(self%mechanical%matrix%value), &
          allocated(self%thermal%matrix%value), allocated(self%thermal_load%value))
    end subroutine move_operators
+
+   !> Gives C the slopes of latent heat.
+   pure subroutine set_melting(self, slopes)
+      class(reduced_bodies_type), intent(inout) :: self !! assembled
+      real(dp), intent(in) :: slopes(:)                      !! (nodes) [energy/temperature]
+
+      if (allocated(self%melting)) then
+         if (all(abs(self%melting - slopes) <= 0.0_dp)) return
+      end if
+      self%melting = slopes
+      call add_melting(self)
+   end subroutine set_melting
+
+   pure subroutine add_melting(self)
+      type(reduced_bodies_type), intent(inout) :: self
+      integer :: i, k
+
+      self%capacity = self%sensible
+      associate (c => self%capacity)
+         do i = 1, size(self%melting)
+            if (self%melting(i) <= 0.0_dp) cycle
+            k = c%row_start(i) - 1 + findloc(c%column(c%row_start(i):c%row_start(i + 1) - 1), i, &
+               dim=1)
+            c%value(k) = c%value(k) + self%melting(i)
+         end do
+      end associate
+   end subroutine add_melting
 
    !> Whether the operators are those of temperatures and tangents.
    pure logical function has_operators_of(self, temperature, tangent) result(has)

@@ -40,6 +40,8 @@ module solution_state
       !> (2 nodes) what the stiffness has beyond the bodies, initial stresses included; unallocated
       !> for none [force]
       real(dp), allocatable :: forces_beyond(:)
+      !> (1) when the last point became solid; unallocated while one is not [time]
+      real(dp), allocatable :: solid_time(:)
       real(dp), allocatable :: history(:)           !! what all integration points remember, or none
       real(dp), allocatable :: work(:)   !! (2) of friction and of loads beside these [energy]
       ! The next four where materials vary.
@@ -94,6 +96,7 @@ contains
       call reals(self, 'operators_at', state%operators_at)
       call reals(self, 'tangent', state%tangent)
       call reals(self, 'history', state%history)
+      call reals(self, 'solid_time', state%solid_time)
       call reals(self, 'work', state%work)
       call reals(self, 'corrections', state%corrections)
       call reals(self, 'corrections_before', state%corrections_before)

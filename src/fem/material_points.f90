@@ -35,6 +35,7 @@ module material_points
       procedure :: respond
       procedure, private :: changes_of_modes
       procedure :: follows_law
+      procedure :: start_history
       procedure :: largest_growth
       procedure :: take_strains
       procedure :: inelastic_work
@@ -307,6 +308,27 @@ contains
       follows_law = has_law(self%library(self%sections(mesh%element_section(element))%material))
    end function follows_law
 
+   !> Gives the history of points that anneal their first temperature.
+   pure subroutine start_history(self, mesh, temperature, history)
+      class(material_points_type), intent(in) :: self
+      type(mesh_type), intent(in) :: mesh
+      real(dp), intent(in) :: temperature(:)                 !! (nodes) [temperature]
+      real(dp), intent(inout) :: history(:)                  !! (numbers)
+      integer :: e, g
+
+      do e = 1, size(mesh%element_kind)
+         associate (law => self%library(self%sections(mesh%element_section(e))%material)%law, &
+            rule => self%rules(mesh%element_kind(e)))
+            if (law%annealing == 0) cycle
+            do g = 1, rule%count
+               history(self%history_start(e) + (g - 1)*law%history_count + law%annealing + 3) = &
+                  dot_product(rule%shape(g, :rule%nodes), &
+                  temperature(mesh%element_nodes(:rule%nodes, e)))
+            end do
+         end associate
+      end do
+   end subroutine start_history
+
    !> Largest equivalent plastic and creep strains of the bodies [-], or their growth since another
    !> history.
    pure function largest_growth(self, mesh, after, before) result(growth)
@@ -335,7 +357,7 @@ contains
 
    !> History at which the second stage of an increment starts: beyond that of the first one by
    !> a factor less one. What strain alone changes starts where the first stage ended if strains
-   !> jumped in it.
+   !> jumped in it. Where a point becomes solid is found in the whole increment.
    pure function second_start(self, mesh, start, middle, factor, jumps) result(history)
       class(material_points_type), intent(in) :: self
       type(mesh_type), intent(in) :: mesh
@@ -346,13 +368,14 @@ contains
       integer :: e, i, k
 
       history = start + factor*(middle - start)
-      if (.not. jumps) return
+      if (.not. (jumps .or. any(self%library%law%annealing > 0))) return
       do e = 1, size(mesh%element_kind)
          associate (law => self%library(self%sections(mesh%element_section(e))%material)%law)
             if (.not. allocated(law%of_time)) cycle
             do i = self%history_start(e), self%history_start(e + 1) - 1
                k = 1 + modulo(i - self%history_start(e), law%history_count)
-               if (.not. law%of_time(k)) history(i) = middle(i)
+               if (jumps .and. .not. law%of_time(k)) history(i) = middle(i)
+               if (law%annealing > 0 .and. k >= law%annealing) history(i) = start(i)
             end do
          end associate
       end do

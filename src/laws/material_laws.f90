@@ -47,6 +47,11 @@ module material_laws
       type(hardening_type) :: hardening
       type(creep_type) :: creep
       procedure(response), pointer, nopass :: respond => null()
+      ! Of a material that carries no stress above a temperature: this, where the history of
+      ! annealing begins, 0 for none, and the law below it, or none of elasticity.
+      real(dp) :: anneal_temperature = huge(1.0_dp)
+      integer :: annealing = 0
+      procedure(response), pointer, nopass :: respond_solid => null()
    end type material_law_type
 
    abstract interface

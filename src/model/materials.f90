@@ -14,6 +14,7 @@ module materials
    public :: set_property, elasticity_of, isotropic, engineering, orthotropic, anisotropic
    public :: follows_temperature, has_law, in_plane, reference_nodes, strain_freedoms, varies
    public :: thermal_strain, heat_content, heat_capacity_at, expansion_heat
+   public :: set_latent_heat, melts, melting_row, latent_content, solid_fraction, melted_to
    public :: property_keywords, of_elasticity, of_expansion, of_conductivity, of_density, &
       of_specific_heat
 
@@ -65,6 +66,15 @@ module materials
       real(dp), allocatable :: capacity(:, :)         !! (3, parts) rho c: 1, x, x^2 from there on
    end type heat_table_type
 
+   !> A row of *LATENT HEAT: what melting takes up evenly from solidus to liquidus, beside the heat
+   !> of the table.
+   type :: melting_type
+      real(dp) :: solidus = 0.0_dp                    !! [temperature]
+      real(dp) :: liquidus = 0.0_dp                   !! above the solidus [temperature]
+      real(dp) :: content = 0.0_dp                    !! [energy/volume]
+      real(dp) :: capacity = 0.0_dp                   !! content over temperature between them
+   end type melting_type
+
    !> A material; the properties that it inherits are those of the first rows.
    type, extends(properties_type) :: material_type
       real(dp) :: no_strain = 0.0_dp                  !! ZERO= of *EXPANSION [temperature]
@@ -72,6 +82,7 @@ module materials
       !> All properties as the deck gives them; unallocated for none
       type(property_type), allocatable :: given(:)
       type(heat_table_type) :: heat                   !! of density and specific heat
+      type(melting_type), allocatable :: melting(:)   !! *LATENT HEAT; unallocated for none
       type(material_law_type) :: law                  !! beyond thermoelasticity
    contains
       procedure :: set_to
@@ -152,6 +163,13 @@ contains
       end do
    end function follows_temperature
 
+   !> Whether it has a latent heat.
+   elemental logical function melts(material)
+      type(material_type), intent(in) :: material
+
+      melts = allocated(material%melting)
+   end function melts
+
    !> Whether stress is more than thermoelasticity.
    elemental logical function has_law(material)
       type(material_type), intent(in) :: material
@@ -191,6 +209,95 @@ contains
       call take_values(property%kind, property%symmetry, property%values(:, 1), material)
       call integrate_capacity(material)
    end subroutine set_property
+
+   !> Gives a material with density and specific heat its latent heats, in ascending intervals that
+   !> do not overlap. The mass is that at the solidus.
+   pure subroutine set_latent_heat(material, heat, solidus, liquidus)
+      type(material_type), intent(inout) :: material
+      real(dp), intent(in) :: heat(:)                   !! (rows) [energy/mass]
+      real(dp), intent(in) :: solidus(:), liquidus(:)   !! (rows) [temperature]
+      real(dp) :: density(1)
+      integer :: i, k
+
+      if (allocated(material%melting)) deallocate (material%melting)
+      allocate (material%melting(size(heat)))
+      material%melting%solidus = solidus
+      material%melting%liquidus = liquidus
+      do i = 1, size(heat)
+         do k = 1, size(material%given)
+            if (material%given(k)%kind /= of_density) cycle
+            call interpolate(material%given(k), solidus(i), density)
+            material%melting(i)%content = density(1)*heat(i)
+         end do
+      end do
+      material%melting%capacity = material%melting%content/(liquidus - solidus)
+   end subroutine set_latent_heat
+
+   !> The latent heat that a temperature is in the interval of, or 0.
+   pure integer function melting_row(material, temperature) result(row)
+      type(material_type), intent(in) :: material       !! that melts
+      real(dp), intent(in) :: temperature
+
+      do row = size(material%melting), 1, -1
+         if (material%melting(row)%solidus <= temperature) exit
+      end do
+      if (row == 0) return
+      if (temperature >= material%melting(row)%liquidus) row = 0
+   end function melting_row
+
+   !> Latent heat that a unit volume has taken up.
+   pure real(dp) function latent_content(material, temperature) result(content)
+      type(material_type), intent(in) :: material       !! that melts
+      real(dp), intent(in) :: temperature
+      integer :: i
+
+      content = 0.0_dp
+      do i = 1, size(material%melting)
+         associate (row => material%melting(i))
+            if (temperature >= row%liquidus) then
+               content = content + row%content
+            else if (temperature > row%solidus) then
+               content = content + row%capacity*(temperature - row%solidus)
+            end if
+         end associate
+      end do
+   end function latent_content
+
+   !> Part of the latent heats that is given off at a temperature.
+   pure real(dp) function solid_fraction(material, temperature) result(fraction)
+      type(material_type), intent(in) :: material       !! that melts
+      real(dp), intent(in) :: temperature
+
+      fraction = 1.0_dp - latent_content(material, temperature)/sum(material%melting%content)
+   end function solid_fraction
+
+   !> Where a temperature gets to with a latent heat that it has not taken up: with rho c of the
+   !> first rows, the temperature that has the heat of both, and the latent heat that this is
+   !> within, or 0. An interval may be as narrow as temperatures round, so the heat says which.
+   pure subroutine melted_to(material, given, latent, temperature, row)
+      type(material_type), intent(in) :: material       !! that melts
+      real(dp), intent(in) :: given                     !! [temperature]
+      real(dp), intent(in) :: latent                    !! [energy/volume]
+      real(dp), intent(out) :: temperature
+      integer, intent(out) :: row
+      real(dp) :: capacity, content, taken_up
+
+      capacity = heat_capacity(material)
+      taken_up = 0.0_dp
+      do row = 1, size(material%melting)
+         associate (melting => material%melting(row))
+            content = capacity*(given - melting%solidus) + latent - taken_up
+            if (content <= 0.0_dp) exit
+            if (content < capacity*(melting%liquidus - melting%solidus) + melting%content) then
+               temperature = melting%solidus + content/(capacity + melting%capacity)
+               return
+            end if
+            taken_up = taken_up + melting%content
+         end associate
+      end do
+      row = 0
+      temperature = given + (latent - taken_up)/capacity
+   end subroutine melted_to
 
    !> Gives properties the constants of a card.
    pure subroutine take_values(kind, symmetry, values, there)

@@ -11,7 +11,7 @@ module quantity_types
    public :: needs_nothing, needs_temperature, needs_heat, needs_mechanics, needs_coupling
    public :: needs_storage, needs_dilatation, needs_friction_heat, needs_wear, needs_stability
    public :: needs_branch, needs_sections, needs_plasticity, needs_creep, needs_laws, &
-      needs_references, last_need
+      needs_references, needs_melting, last_need
 
    integer, parameter :: name_length = 25
 
@@ -45,7 +45,8 @@ module quantity_types
    integer, parameter :: needs_laws = 13         !! one of both
    integer, parameter :: needs_references = 14   !! mechanics and generalized plane strain
    integer, parameter :: needs_wear = 15         !! mechanics and *WEAR
-   integer, parameter :: last_need = needs_wear
+   integer, parameter :: needs_melting = 16      !! heat and *LATENT HEAT
+   integer, parameter :: last_need = needs_melting
 
    type :: quantity_type
       character(name_length) :: name           !! of its dataset, in *VERIFY and in tables of errors

@@ -7,7 +7,7 @@ module model_words
    use kinds, only: dp
    use element_kinds, only: axisymmetric, generalized_strain, plane_strain, plane_stress
    use friction_laws, only: friction_heat_type, friction_law_type, rough_coefficient, unlimited
-   use materials, only: follows_temperature, material_type, of_expansion, thermal_strain
+   use materials, only: follows_temperature, material_type, melts, of_expansion, thermal_strain
    use model, only: model_type
    use overlap_laws, only: overlap_law_type
    use steps, only: analysis_heat, analysis_static
@@ -204,8 +204,9 @@ contains
       if (words == '') words = 'no constants'
    end function material_words
 
-   !> Plasticity and creep of a material; empty without them. Creep is told as the strain that a
-   !> five-hundredth of the shear modulus G makes in a time of 1, which shows wrong units.
+   !> Plasticity, creep, annealing and melting of a material; empty without them. Creep is told as
+   !> the strain that a five-hundredth of the shear modulus G makes in a time of 1, which shows
+   !> wrong units.
    pure function law_words(material) result(words)
       type(material_type), intent(in) :: material
       character(:), allocatable :: words
@@ -239,6 +240,16 @@ contains
                to_text(temperature)
          end if
       end associate
+      if (material%law%annealing > 0) then
+         if (words /= '') words = words//'; '
+         words = words//'carries no stress above temperature '// &
+            to_text(material%law%anneal_temperature)
+      end if
+      if (.not. melts(material)) return
+      if (words /= '') words = words//'; '
+      words = words//'melts from '//to_text(material%melting(1)%solidus)//' to '// &
+         to_text(material%melting(size(material%melting))%liquidus)//' with '// &
+         to_text(sum(material%melting%content))//' a volume'
    end function law_words
 
    !> What a table of expansion coefficients means: strains at its ends from the initial temperature

@@ -15,7 +15,7 @@ module results
    use field_quantities, only: maxima
    use file_calls, only: identity_of, remove_file, rename_file, try_file
    use growing_datasets, only: bytes_in, flush_sets
-   use materials, only: of_expansion, reference_nodes
+   use materials, only: melts, of_expansion, reference_nodes
    use increment_quantities, only: history_estimated
    use result_tables, only: result_table_type, with_uncertainty, write_geometry
    use equations, only: section_nodes
@@ -28,7 +28,7 @@ module results
       needs_branch, needs_heat, needs_mechanics, needs_nothing, needs_sections, needs_stability, &
       needs_storage, needs_temperature, of_bodies, of_contact_points, of_history, of_interface, &
       of_passes, of_references, of_sections, quantity_type, last_need, needs_creep, &
-      needs_plasticity, needs_laws, needs_references
+      needs_plasticity, needs_laws, needs_references, needs_melting
    use records, only: increment_record_type
    use reported_quantities, only: datasets, geometry
    use accuracy_lines, only: write_accuracy
@@ -195,7 +195,8 @@ contains
                0, steps)
          end do
          if (is_full(model)) call tables(size(tables))%start('/uncertainty/increment', &
-            with_uncertainty(history_estimated), 0, steps)
+            with_uncertainty(pack(history_estimated, has(history_estimated%needs) .or. &
+            history_estimated%needs /= needs_melting)), 0, steps)
       end associate
    end subroutine open_results
 
@@ -371,6 +372,7 @@ contains
          has(needs_plasticity) = has(needs_mechanics) .and. any(model%materials%law%strains(1) > 0)
          has(needs_creep) = has(needs_mechanics) .and. any(model%materials%law%strains(2) > 0)
          has(needs_laws) = has(needs_plasticity) .or. has(needs_creep)
+         has(needs_melting) = has(needs_heat) .and. any(melts(model%materials))
          has(needs_friction_heat) = has(needs_heat) .and. makes_friction_heat( &
             model%interactions, model%contacts)
          has(needs_wear) = has(needs_mechanics) .and. &

@@ -10,7 +10,7 @@ module summary
    use increment_quantities, only: stability_words
    use field_quantities, only: maxima
    use kinds, only: dp
-   use materials, only: in_plane
+   use materials, only: in_plane, melts
    use mesh, only: mesh_type
    use model, only: model_type
    use model_words, only: has_many
@@ -61,6 +61,7 @@ module summary
       character(:), allocatable :: cycle           !! what the last cycle did, or none
       real(dp), allocatable :: inelastic_strain(:, :)   !! (2, bodies) as in the record, or none
       type(string_type), allocatable :: steps(:)   !! a line for each step and interface
+      real(dp), allocatable :: solid_time          !! when the last point became solid [time]
       character(:), allocatable :: stability                       !! whether it lasts; or empty
       real(dp), allocatable :: load_factor   !! of a point of a branch
       real(dp), allocatable :: folds(:)   !! load factors of the folds so far; unallocated for none
@@ -94,6 +95,8 @@ contains
       self%contacts = record%contacts
       self%stability = stability_words(record)
       if (allocated(record%cycle)) self%cycle = record%cycle
+      if (allocated(self%solid_time)) deallocate (self%solid_time)
+      if (allocated(record%solid_time)) self%solid_time = record%solid_time
       if (allocated(record%inelastic_strain)) self%inelastic_strain = record%inelastic_strain
       if (allocated(self%load_factor)) deallocate (self%load_factor)
       if (allocated(record%load_factor)) self%load_factor = record%load_factor
@@ -166,6 +169,7 @@ contains
          if (interfaces == 0) most_lines = 1 + size(heat_names) + 1
          if (interfaces > 0 .and. steps > 1) most_lines = most_lines + 1 + told*steps
          if (any(model%steps%cycle%steps > 0)) most_lines = most_lines + 1
+         if (any(melts(model%materials))) most_lines = most_lines + 1
          most_lines = most_lines + count([any(model%materials%law%strains(1) > 0), &
             any(model%materials%law%strains(2) > 0)])
          ! Some of a body's lines are wrapped.
@@ -211,6 +215,8 @@ contains
          end if
       end if
       if (allocated(self%inelastic_strain)) call add_strains(self, model, lines)
+      if (allocated(self%solid_time)) call append(lines, summary_line('all solid at', &
+         self%solid_time, mark_of(reason_inside_step(model)), '-', ''))
       if (allocated(self%cycle)) call append(lines, self%cycle)
       if (self%stability /= '') call append(lines, self%stability)
    end subroutine add_lines

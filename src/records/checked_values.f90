@@ -29,7 +29,7 @@ contains
       quantity = verifiable(find_quantity(verifiable, check%quantity))
       is_estimable = .not. (quantity%is_integer .or. quantity%is_geometry .or. &
          any(quantity%unit == [character(4) :: '-', 'time', 'load']) .and. &
-         all(quantity%kind /= [of_nodes, of_references]))
+         all(quantity%kind /= [of_nodes, of_references]) .and. .not. quantity%is_estimated)
    end function is_estimable
 
    !> The value that is farthest from what a check expects; NaN where one is.

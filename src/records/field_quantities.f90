@@ -3,8 +3,8 @@
 module field_quantities
    use kinds, only: dp
    use quantity_types, only: needs_creep, needs_heat, needs_laws, needs_mechanics, &
-      needs_plasticity, needs_stability, needs_temperature, of_bodies, of_elements, of_nodes, &
-      of_points, quantity_type
+      needs_melting, needs_plasticity, needs_stability, needs_temperature, of_bodies, of_elements, &
+      of_nodes, of_points, quantity_type
    use records, only: field_record_type
    implicit none
    private
@@ -14,6 +14,7 @@ module field_quantities
       quantity_type('U1', of_nodes, 'length', needs_mechanics), &
       quantity_type('U2', of_nodes, 'length', needs_mechanics), &
       quantity_type('NT', of_nodes, 'temperature', needs_temperature), &
+      quantity_type('SOLID', of_nodes, '-', needs_melting), &
       quantity_type('S11', of_nodes, 'stress', needs_mechanics), &
       quantity_type('S22', of_nodes, 'stress', needs_mechanics), &
       quantity_type('S33', of_nodes, 'stress', needs_mechanics), &
@@ -56,6 +57,8 @@ module field_quantities
       description='equivalent creep strain so far'), &
       quantity_type('temperature', of_points, 'temperature', needs_temperature, head='temp.', &
       is_traded=.true., description='temperature'), &
+      quantity_type('solid_fraction', of_points, '-', needs_melting, &
+      description='part of the latent heat that is given off, 1 where nothing melts'), &
       quantity_type('heat_flux', of_points, 'power/length^2', needs_heat, values=3, &
       description='heat flux, averaged per body and section', components='x y z'), &
       quantity_type('mode_temperature', of_points, '-', needs_stability, &
@@ -105,6 +108,8 @@ contains
          if (allocated(fields%mode_temperature)) values = fields%mode_temperature(point_node)
       case ('NT', 'temperature')
          if (allocated(fields%temperature)) values = fields%temperature(point_node)
+      case ('SOLID', 'solid_fraction')
+         if (allocated(fields%solid_fraction)) values = fields%solid_fraction(point_node)
       case ('S11', 'S22', 'S33', 'S12')
          values = rows(fields%stress, [place_in_tensor(name(2:3))])
       case ('stress')

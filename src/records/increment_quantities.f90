@@ -3,8 +3,8 @@ module increment_quantities
    use, intrinsic :: ieee_arithmetic, only: ieee_quiet_nan, ieee_value
    use kinds, only: dp
    use quantity_types, only: needs_branch, needs_coupling, needs_creep, needs_dilatation, &
-      needs_friction_heat, needs_heat, needs_laws, needs_mechanics, needs_plasticity, &
-      needs_references, needs_sections, needs_stability, needs_storage, of_bodies, of_elements, &
+      needs_friction_heat, needs_heat, needs_laws, needs_mechanics, needs_melting, &
+      needs_plasticity, needs_references, needs_sections, needs_stability, needs_storage, of_bodies, of_elements, &
       of_history, of_passes, of_references, of_sections, quantity_type
    use field_recovery, only: error_record_type
    use records, only: increment_record_type, stability_record_type
@@ -40,6 +40,8 @@ module increment_quantities
       quantity_type('heat_friction', of_history, 'power', needs_friction_heat, &
       label='heat of friction', is_estimated=.true., &
       description='heat that friction makes'), &
+      quantity_type('solid_time', of_history, 'time', needs_melting, is_estimated=.true., &
+      description='time at which the last point that melts became solid; NaN before'), &
       quantity_type('heat_imbalance', of_history, '-', needs_heat, label='heat imbalance', &
       description='imbalance of the heat balance that the scheme solves, over the largest rate'), &
       quantity_type('heat_imbalance_pointwise', of_history, '-', needs_heat, &
@@ -161,6 +163,9 @@ contains
          value = record%heat_dilatation
       case ('heat_friction')
          value = record%heat_friction
+      case ('solid_time')
+         value = ieee_value(value, ieee_quiet_nan)
+         if (allocated(record%solid_time)) value = record%solid_time
       case ('heat_imbalance')
          value = record%heat_imbalance
       case ('heat_imbalance_pointwise')

@@ -84,6 +84,7 @@ module records
       ! Displacement, stress and reaction are unallocated before mechanics is solved.
       real(dp), allocatable :: displacement(:, :)   !! (2, nodes) [length]
       real(dp), allocatable :: temperature(:)       !! (nodes) [temperature]
+      real(dp), allocatable :: solid_fraction(:)    !! (nodes) [-]; unallocated where none melts
       !> (4, points) xx, yy, zz, xy; unallocated where nothing needs it, too [stress]
       real(dp), allocatable :: stress(:, :)
       !> (2, points) x, y; unallocated without heat and where nothing needs it [power/length^2]
@@ -131,6 +132,7 @@ module records
       real(dp) :: load = 0.0_dp              !! value on the load axis
       real(dp), allocatable :: load_factor   !! of a point of a branch; else unallocated [-]
       logical :: is_fold = .false.           !! whether the load factor turns there
+      real(dp), allocatable :: solid_time    !! when the last point became solid, if it did [time]
       real(dp) :: heat_in = 0.0_dp           !! sum of the net rates that are positive [power]
       real(dp) :: heat_out = 0.0_dp          !! magnitude of the sum of the negative ones [power]
       !> Of a transient: error in time over the range of temperatures, and largest change of one.

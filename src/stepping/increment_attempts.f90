@@ -27,7 +27,7 @@ module increment_attempts
    use sliding_attempts, only: check_arrivals, check_slip
    use solution_state, only: solution_state_type
    use steps, only: solves_heat, solves_mechanics
-   use text, only: to_text
+   use text, only: append, to_text
    use unconstrained_bodies, only: unconstrained_now
    implicit none
    private
@@ -185,6 +185,16 @@ contains
             bodies%thermal_load, next%displacement - attempt%before%displacement))/ &
             attempt%stage%size
          if (attempt%stage%is_last) then
+            if (attempt%stage%stores_heat .and. run%corrections%melting%acts) then
+               call run%corrections%melting%find_solid_time(model, reshape([ &
+                  run%state%temperature, next%temperature], [size(next%temperature), 2]), &
+                  attempt%stage%passing%instants, next%solid_time)
+               if (allocated(next%solid_time) .and. .not. allocated(run%state%solid_time)) &
+                  then
+                  call append(record%notes, 'the last point is solid at time '//to_text( &
+                     next%solid_time(1)))
+               end if
+            end if
             since = wall_seconds()
             call complete_record(bodies, model, run%recovery, run%loads, attempt%data, next, record)
             run%seconds%recover = run%seconds%recover + (wall_seconds() - since)
@@ -306,6 +316,10 @@ contains
       type(error_type), allocatable, intent(out) :: error
       type(solved_loads_type), allocatable :: known(:)   ! before the stage
 
+      if (run%corrections%melting%acts .and. attempt%stage%stores_heat) then
+         call run%corrections%melting%begin(model, attempt%before%temperature)
+         call run%bodies%set_melting(run%corrections%melting%slopes(model))
+      end if
       call begin_trial(run, model, attempt, error)
       if (allocated(error)) return
       associate (corrections => run%corrections, step => model%steps(run%control%step))
@@ -325,7 +339,7 @@ contains
             if (allocated(error)) return
             if (corrections%is_settled) exit
             attempt%known = known
-            if (corrections%asks_operators) then
+            if (corrections%asks_operators .or. corrections%asks_capacity) then
                call renew_operators(run, model, attempt, error)
                if (.not. allocated(error)) call begin_trial(run, model, attempt, error)
                if (allocated(error)) return
@@ -338,7 +352,7 @@ contains
       end associate
    end subroutine solve_corrected
 
-   !> Forms the operators at the solution of a stage, and goes on from it.
+   !> Forms the operators, or C alone, at the solution of a stage, and goes on from it.
    !> Errors: as reduce.
    subroutine renew_operators(run, model, attempt, error)
       type(simulation_type), intent(inout) :: run
@@ -347,6 +361,11 @@ contains
       type(error_type), allocatable, intent(out) :: error
       real(dp), allocatable :: tangent(:)
 
+      if (run%corrections%asks_capacity) then
+         call run%bodies%set_melting(run%corrections%melting%slopes(model))
+         call run%corrections%renew(model, run%bodies, attempt%before, attempt%next)
+         return
+      end if
       call run%corrections%find_tangents(model, attempt%next, tangent)
       associate (bodies => run%bodies)
          call bodies%move_operators(model, attempt%next%temperature, tangent)

@@ -17,8 +17,9 @@ module increment_records
    use loads, only: loads_type
    use model, only: model_type
    use material_laws, only: law_points_type
-   use materials, only: material_axes, varies
+   use materials, only: material_axes, melts, varies
    use material_points, only: material_points_type, point_history_type
+   use melting, only: solid_fractions
    use point_rules, only: most => most_points_of_rule
    use point_properties, only: along_axes
    use print_requests, only: print_request_type
@@ -64,6 +65,9 @@ contains
             record%contacts(i) = contact_record(bodies, solves_heat(step%analysis), i, next)
          end do
          record%fields%temperature = next%temperature
+         if (any(melts(model%materials))) record%fields%solid_fraction = solid_fractions(model, &
+            next%temperature)
+         if (allocated(next%solid_time)) record%solid_time = next%solid_time(1)
          if (solves_mechanics(step%analysis)) then
             call balance_forces(bodies, model, loads, next, record)
          else

@@ -27,6 +27,7 @@ module operator_corrections
    use model, only: model_type
    use material_laws, only: law_points_type
    use material_points, only: elastic_part, material_points_type, point_history_type
+   use melting, only: melting_type
    use point_rules, only: integration_rules, load_rules, most => most_points_of_rule
    use reduced_bodies, only: reduced_bodies_type
    use solution_state, only: solution_state_type
@@ -53,6 +54,7 @@ module operator_corrections
       type(material_points_type), allocatable, public :: points   !! of integration
       type(material_points_type), allocatable :: contents         !! of heat contents
       integer, allocatable :: elements(:)
+      type(melting_type), public :: melting        !! of the stage
       type(stage_type) :: stage                    !! that is corrected
       type(point_history_type) :: history          !! of it
       real(dp), allocatable :: initial_force(:)    !! (2 nodes) of initial stresses, or none [force]
@@ -72,6 +74,7 @@ module operator_corrections
       integer, public :: passes = 0                !! of the stage
       logical, public :: is_settled = .false.      !! whether a solution is that of its corrections
       logical, public :: asks_operators = .false.  !! whether operators are to be formed at it
+      logical, public :: asks_capacity = .false.   !! whether C alone is, where other nodes melt
       integer, public :: renewed_at = 0            !! pass after which they were last, in the stage
       logical, public :: corrects = .false.        !! whether the run has anything to correct
       !> Largest equivalent stress over 3 G that laws found last, an elastic strain
@@ -119,7 +122,8 @@ contains
          end do
       end associate
       if (allocated(initial_force)) self%initial_force = initial_force
-      self%corrects = any(follows) .or. any(model%steps%dilates)
+      call self%melting%prepare(model)
+      self%corrects = any(follows) .or. any(model%steps%dilates) .or. self%melting%acts
       self%has_laws = any(has_law(model%materials))
       self%heats = any(model%materials%law%heat_fraction > 0.0_dp) .and. &
          any(model%steps%is_transient)
@@ -177,7 +181,9 @@ contains
       end if
       if (stage%dilates) self%strain_before = bodies%dilatation%taken_up(bodies%thermal_load, &
          stage%displacement, stage%temperature)
-      goes_on = allocated(before%corrections) .and. .not. foresees(self, before)
+      ! Where nodes melt corrections are of another C.
+      goes_on = allocated(before%corrections) .and. .not. (foresees(self, before) .or. &
+         self%melting%acts)
       if (goes_on .and. allocated(bodies%operators_at)) goes_on = &
          bodies%has_operators_of(before%operators_at, before%tangent)
       if (takes_past .or. .not. goes_on) self%heat_before = self%heat_beyond(model, bodies, &
@@ -259,14 +265,27 @@ contains
       end if
       self%is_settled = self%left_over <= settled
       self%asks_operators = .false.
-      if (.not. self%is_settled .and. size(self%elements) > 0) call judge_pass(self, last)
-      if (self%is_settled .or. self%asks_operators) return
+      self%asks_capacity = .false.
+      self%melting%jumps = .false.
+      if (self%is_settled) return
+      if (self%melting%acts .and. self%stage%stores_heat) call self%melting%move(model, &
+         next%temperature)
+      self%asks_capacity = self%melting%jumps .and. self%melting%changes_rows
+      if (size(self%elements) > 0 .and. .not. self%melting%jumps) call judge_pass(self, last)
+      if (self%asks_operators) return
       if (self%passes > most_passes .or. .not. self%left_over < huge(last)) then
          words = 'heat and stress of bodies do not follow their temperatures'
          if (self%has_laws) words = &
             'stresses of bodies that yield or creep do not follow their strains'
          call set_error(error, status_no_convergence, words// &
             ' within '//to_text(most_passes)//' corrections')
+         return
+      end if
+      if (self%asks_capacity) return
+      if (self%melting%jumps) then
+         call start_mixing(self)
+         self%values = self%values + left_over*self%scale
+         call lead_melting(self, model, next%temperature)
          return
       end if
       x = self%values/self%scale
@@ -300,7 +319,19 @@ contains
       if (self%has_laws) self%mixing%rank_tolerance = least_rank
    end subroutine start_mixing
 
-   !> Goes on with operators that were formed at a solution.
+   !> Gives corrections at a solution the latent heat that leads the next one.
+   subroutine lead_melting(self, model, temperature)
+      type(corrections_type), intent(inout) :: self
+      type(model_type), intent(in) :: model
+      real(dp), intent(in) :: temperature(:)                 ! (nodes)
+
+      associate (n => size(temperature))
+         self%values(:n) = self%values(:n) + (self%melting%led_contents(model, temperature) - &
+            self%melting%contents(model, temperature))/self%stage%duration
+      end associate
+   end subroutine lead_melting
+
+   !> Goes on with operators, or C alone, that were formed at a solution.
    subroutine renew(self, model, bodies, before, at)
       class(corrections_type), intent(inout) :: self
       type(model_type), intent(in) :: model
@@ -308,12 +339,14 @@ contains
       type(solution_state_type), intent(in) :: before        !! state at the start of the stage
       type(solution_state_type), intent(in) :: at            !! the solution
 
-      self%renewed_at = self%passes
+      ! Where a front passed on, they are of another state.
+      self%renewed_at = merge(self%passes, 0, self%asks_operators)
       self%slow_passes = 0
       call start_mixing(self)
       deallocate (self%scale)
       self%heat_before = self%heat_beyond(model, bodies, before%temperature)
       self%values = corrections_of(self, model, bodies, at%temperature, at%displacement)
+      if (self%asks_capacity) call lead_melting(self, model, at%temperature)
    end subroutine renew
 
    !> Keeps the corrections of a stage in its state, for the next one to begin with.
@@ -367,6 +400,7 @@ contains
       type(reduced_bodies_type), intent(in) :: bodies
       real(dp), intent(in) :: temperature(:), displacement(:)
       real(dp), allocatable :: values(:)                     ! (4 nodes)
+      real(dp) :: melting(size(temperature))                 ! what C has of it
       integer :: n
 
       n = size(temperature)
@@ -374,9 +408,11 @@ contains
       values(n + 1:2*n) = heat_beyond(self, model, bodies, temperature)
       values(2*n + 1:) = forces_beyond(self, model, bodies, temperature, displacement)
       if (.not. self%stage%stores_heat) return
+      melting = 0.0_dp
+      if (allocated(bodies%melting)) melting = bodies%melting*(temperature - self%stage%temperature)
       if (allocated(self%stage%content)) values(:n) = true_contents(self, model, temperature) - &
          self%stage%content - merge(bodies%capacity%multiply(temperature - &
-         self%stage%temperature), 0.0_dp, self%follows)
+         self%stage%temperature), melting, self%follows)
       if (allocated(self%strain_before)) values(:n) = values(:n) + bodies%dilatation%taken_up( &
          bodies%thermal_load, displacement, temperature) - self%strain_before
       if (self%heats .and. self%stage%strains) values(:n) = values(:n) - self%inelastic_heat(model)
@@ -524,7 +560,7 @@ contains
       end do
    end subroutine find_tangents
 
-   !> Heat contents of the bodies whose materials vary, on the nodes.
+   !> Heat contents of the bodies whose materials vary, and latent heat of all, on the nodes.
    pure function true_contents(self, model, temperature) result(contents)
       class(corrections_type), intent(in) :: self
       type(model_type), intent(in) :: model
@@ -536,6 +572,7 @@ contains
       do i = 1, size(self%elements)
          call self%contents%add_contents(model%mesh, self%elements(i), temperature, contents)
       end do
+      if (self%melting%acts) contents = contents + self%melting%contents(model, temperature)
    end function true_contents
 
    !> Largest heat and forces of a solution, by which what is left over is small; at least those of
@@ -594,6 +631,8 @@ contains
             abs(next%temperature))))
          if (self%stage%dilates) stored = max(stored, maxval(bodies%capacity%multiply( &
             bodies%dilatation%absolute)), maxval(bodies%dilatation%absolute)*thermal_load*shift)
+         if (self%melting%acts) stored = max(stored, self%melting%unresolved(model, &
+            next%temperature)/rounding)
          terms(1) = max(terms(1), stored/self%stage%duration)
       end if
       terms(2) = max(bodies%mechanical%largest_entry*shift, thermal_load*max(warmth, &

@@ -92,6 +92,8 @@ contains
          allocate (self%sliding_told(2*size(model%contacts)), source=.false.)
       end if
       call self%corrections%prepare(model, self%state%forces_beyond)
+      if (any(model%materials%law%annealing > 0)) call self%corrections%points%start_history( &
+         model%mesh, model%initial_temperature, self%state%history)
       self%seconds%assemble = (wall_seconds() - since)
       call measure_steps(model, self%bodies%points, self%loads, self%state, self%sizes, error)
       if (.not. allocated(error)) call enter_step(self, model)

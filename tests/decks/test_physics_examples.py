@@ -281,7 +281,8 @@ def test_example_passes_its_checks(tmp_path, name):
     assert process.stderr == ""
     with h5py.File(tmp_path / f"{name}.vtkhdf") as file:
         # Rounding of sums over some hundred nodes; the shrink fit's radial sums are no imbalance.
-        assert (file["history/force_imbalance"][()] < 1e-9).all()
+        # Laws settle to 1e-9 of the largest force at a node, and few forces balance in a melt.
+        assert (file["history/force_imbalance"][()] < (1e-7 if name == "casting" else 1e-9)).all()
 
 
 def test_heat_that_enters_the_shocked_fit_warms_it(tmp_path):
@@ -384,6 +385,17 @@ def test_the_temperatures_of_a_valve_stem_repeat(tmp_path):
     mean = {k: np.mean(v[-cycle:]) for k, v in history.items()}
     assert mean["heat_friction"] > 0.5
     assert mean["heat_in"] + mean["heat_friction"] == pytest.approx(mean["heat_out"], rel=0.02)
+
+
+def casting():
+    """Halfway between Chvorinov's time with the resistance of the coating, and with that of the gap
+    besides by which the shell shrinks while it cools from 560 to 450."""
+    heat = 2.6e-6 * (3.9e5 + 95 * 1000.0) / (585.0 - 200.0)
+    ways = 0.0125 / 5e-5, (0.0125 + 0.05) / 5e-5
+    times = [pi / 4 * heat**2 / (0.03 * 7.8e-6 * 500.0) * 10.0**2 + heat * 10.0 * way
+             for way in ways]
+    return {("solid_time", "", "LAST"): sum(times) / 2, ("MISES", "1", "10."): 0.0,
+            ("SOLID", "1", "LAST"): 1.0}
 
 
 @pytest.mark.parametrize("name", NAMES)

@@ -424,14 +424,18 @@ def test_the_file_has_all_that_the_document_tells(results, tmp_path):
     tube = (EXAMPLES / "autofrettage.inp").read_text().split("*VERIFY")[0]
     creeping = tube.replace("*SOLID SECTION", "*CREEP, LAW=NORTON\n1.E-20, 5., 0.\n*SOLID SECTION").replace(
         "*STATIC\n0.1, 1.", "*VISCO\n0.1, 1.", 1)
-    for name, deck in (("stretched", STRETCHED), ("rubbed", RUBBED), ("branch", branch), ("creeping", creeping)):
+    worn = RUBBED.replace("*FRICTION", "*WEAR\n1.E-9\n*FRICTION", 1).replace("*STABILITY\n", "")
+    melting = STRETCHED.replace("*SOLID SECTION", "*LATENT HEAT\n1., 1.E3, 2.E3\n*SOLID SECTION", 1)
+    for name, deck in (("stretched", STRETCHED), ("rubbed", RUBBED), ("branch", branch), ("creeping", creeping),
+                       ("melting", melting), ("worn", worn)):
         (tmp_path / f"{name}.inp").write_text(deck)
         status, said = run(tmp_path / f"{name}.inp")
         assert status == 0, said
     names = set()
     for path in (results / "cylinder.vtkhdf", results / "cylinder.contact.vtkhdf",
                  *(tmp_path / f"{name}.vtkhdf" for name in ("press_fit", "bolted_flange", "free_fit",
-                                                            "stretched", "rubbed", "branch", "creeping"))):
+                                                            "stretched", "rubbed", "branch", "creeping",
+                                                            "melting", "worn"))):
         with h5py.File(path) as file:
             names |= {name.rpartition("/")[2] for name in every_dataset(file)}
             names |= set(file["run"].attrs) if "run" in file else set()

@@ -40,6 +40,7 @@ tolerance.
 | [Heat of friction](#heat-of-friction) | half-spaces that rub, sliding blocks, sliding bars and half-planes that grow hot, a turning ring | heat is the work of friction to rounding; growth rates to 1 % |
 | [Sliding](#sliding) | rollers, a sleeve and pads that slide by many spacings of nodes; Jaeger's moving source | Hertz's pressure to 1 % at every place, a constant one to rounding; Jaeger's temperatures to 1 % |
 | [Properties over temperature](#properties-over-temperature) | slab, bar, half-spaces, cylinders, steady and warmed | rectangles with linear k(T) to rounding; transients with the order 2 of the scheme; cylinders to 0.01 % |
+| [Melting](#melting) | Stefan's front for three latent heats, Neumann's of two phases, a bar that becomes solid between walls | fronts to 0.5 % of their place and half of it with each finer row; stress and plastic strain of the solid to rounding |
 | [Plasticity and creep](#plasticity-and-creep) | NAFEMS's path, Hill's tube and its collapse in every element, Norton's laws, relaxing bars and press fits, Bree's plate, first yield under a cylinder | creep at constant stress to rounding; paths and relaxation with the order of the scheme; tubes, their collapse and press fits to 0.1 %, Bree's rates to 0.5 % |
 | [Stability in time](#stability-in-time) | rods with three solutions and with one that oscillates, Barber's rod, sliding bars and half-planes | growth rates and periods to four digits |
 
@@ -62,7 +63,7 @@ How to read the tables:
 RESULTANTS = ("normal_force", "shear_force", "heat_in", "heat_out")
 ROUNDING = 1e-9  # errors below it have no order
 THEMES = ("elements", "nafems", "contact", "friction", "heat", "bodies", "transients",
-          "dilatation", "frictional_heat", "sliding", "tables", "inelastic", "stability")
+          "dilatation", "frictional_heat", "sliding", "tables", "melting", "inelastic", "stability")
 DOCUMENT = Document("verification.md", HERE, THEMES, PREFACE)
 HEAD = ["mesh", "quantity", "value", "reference", "error", "order", "allowed", "verdict"]
 BOUND = 5  # column of the bound in tables that have one

@@ -1,7 +1,7 @@
 !> Cards -> model. The cards are read by theme, so their order matters only where the dialect
 !> says so.
 module deck_builder
-   use materials, only: of_expansion, of_specific_heat
+   use materials, only: melts, of_expansion, of_specific_heat
    use mesh_bodies, only: find_bodies
    use cards, only: cards_type
    use step_checks, only: check_continuations, check_laws, check_storage
@@ -191,6 +191,9 @@ contains
       if (any(deck%model%materials%has(of_specific_heat)) .and. .not. &
          any(deck%model%steps%is_transient)) call deck%note('*SPECIFIC HEAT is ignored: no '// &
          'step stores heat')
+      if (any(melts(deck%model%materials)) .and. .not. all(deck%model%steps%is_transient)) call &
+         deck%note('*LATENT HEAT does nothing in steps that store no heat, such as step '// &
+         to_text(findloc(deck%model%steps%is_transient, .false., dim=1)))
       if (.not. any(solves_heat(deck%model%steps%analysis))) return
       if (size(cards_of(deck%cards, 'THERMAL SCHEME')) == 0) then
          if (any(deck%model%steps%is_transient)) call deck%note('no *THERMAL SCHEME: L-STABLE '// &

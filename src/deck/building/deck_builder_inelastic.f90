@@ -1,5 +1,6 @@
-!> *PLASTIC, *CYCLIC HARDENING and *CREEP -> the law of a material.
+!> *PLASTIC, *CYCLIC HARDENING, *CREEP and *ANNEAL TEMPERATURE -> the law of a material.
 module deck_builder_inelastic
+   use annealing, only: annealed_law
    use card_parameters, only: choice, take_parameter
    use card_values, only: check_ascending, read_row, read_rows
    use cards, only: keyword_card_type
@@ -27,7 +28,7 @@ contains
       type(keyword_card_type), intent(in) :: card
       type(deck_type), intent(inout) :: deck
       type(material_type), intent(inout) :: material
-      real(dp) :: heat(1)
+      real(dp) :: value(1)
       logical :: valid
 
       select case (card%name)
@@ -41,11 +42,14 @@ contains
          end if
          call read_table(card, deck, material%law%hardening%yield)
       case ('INELASTIC HEAT FRACTION')
-         heat = default_fraction
-         if (size(card%data) > 0) call read_row(card%data(1), 'fraction? >=0 =0.9', deck, heat, &
+         value = default_fraction
+         if (size(card%data) > 0) call read_row(card%data(1), 'fraction? >=0 =0.9', deck, value, &
             valid)
-         material%law%heat_fraction = heat(1)
-         if (heat(1) > 1.0_dp) call deck%error(card%data(1)%place(1), 'the fraction is at most 1')
+         material%law%heat_fraction = value(1)
+         if (value(1) > 1.0_dp) call deck%error(card%data(1)%place(1), 'the fraction is at most 1')
+      case ('ANNEAL TEMPERATURE')
+         call read_row(card%data(1), 'temperature', deck, value, valid)
+         if (valid) material%law%anneal_temperature = value(1)
       case default
          call build_creep(card, deck, material)
       end select
@@ -216,10 +220,15 @@ contains
       integer, intent(in) :: m                               !! its number
       type(deck_type), intent(inout) :: deck
       type(material_type), intent(inout) :: material
-      real(dp) :: fraction
+      real(dp) :: anneal_temperature, fraction
       integer :: k
 
-      if (.not. (material%law%hardening%yields() .or. material%law%creep%creeps())) return
+      anneal_temperature = material%law%anneal_temperature
+      if (.not. (material%law%hardening%yields() .or. material%law%creep%creeps())) then
+         if (anneal_temperature < huge(fraction)) material%law = annealed_law(material%law, &
+            anneal_temperature)
+         return
+      end if
       if (allocated(material%given)) then
          do k = 1, size(material%given)
             if (material%given(k)%kind /= of_elasticity) cycle
@@ -231,6 +240,8 @@ contains
       fraction = material%law%heat_fraction
       material%law = inelastic_law(material%law%hardening, material%law%creep)
       material%law%heat_fraction = fraction
+      if (anneal_temperature < huge(fraction)) material%law = annealed_law(material%law, &
+         anneal_temperature)
    end subroutine complete_law
 
 end module deck_builder_inelastic

@@ -6,6 +6,7 @@ module deck_builder_materials
    use cards, only: keyword_card_type
    use deck_builder_equations, only: find_reference
    use deck_builder_inelastic, only: build_inelasticity, complete_law
+   use deck_builder_melting, only: build_melting
    use deck_context, only: deck_type
    use deck_source, only: place_type
    use deck_structure, only: cards_of, has_stand_in
@@ -37,10 +38,12 @@ contains
    !> Builds all materials; a property belongs to the last *MATERIAL before it.
    subroutine build_materials(deck)
       type(deck_type), intent(inout) :: deck
+      integer, allocatable :: melting(:)                  ! (materials) *LATENT HEAT, 0 for none
       integer :: k, n
 
       n = size(cards_of(deck%cards, 'MATERIAL'))
       allocate(deck%model%materials(n), deck%material_place(n))
+      allocate (melting(n), source=0)
       n = 0
       do k = 1, size(deck%cards%keywords)
          associate (card => deck%cards%keywords(k))
@@ -53,6 +56,7 @@ contains
                call deck%lose('*ELASTIC')   ! another material may have these
                call deck%lose('*CONDUCTIVITY')
                call deck%lose('*DENSITY')
+               call deck%lose('*SPECIFIC HEAT')
             case ('ELASTIC', 'EXPANSION', 'CONDUCTIVITY', 'DENSITY', 'SPECIFIC HEAT')
                if (n == 0) then
                   if (len(card%meant) == 0) call deck%missing(card%place, '*'//card%name// &
@@ -60,7 +64,14 @@ contains
                else if (size(card%data) > 0) then
                   call build_property(card, deck, deck%model%materials(n))
                end if
-            case ('PLASTIC', 'CYCLIC HARDENING', 'CREEP', 'INELASTIC HEAT FRACTION')
+            case ('LATENT HEAT')
+               if (n > 0) then
+                  if (size(card%data) > 0) melting(n) = k
+               else if (len(card%meant) == 0) then
+                  call deck%missing(card%place, '*LATENT HEAT has no *MATERIAL before it')
+               end if
+            case ('PLASTIC', 'CYCLIC HARDENING', 'CREEP', 'INELASTIC HEAT FRACTION', &
+               'ANNEAL TEMPERATURE')
                if (n == 0) then
                   if (len(card%meant) == 0) call deck%missing(card%place, '*'//card%name// &
                      ' has no *MATERIAL before it')
@@ -74,6 +85,8 @@ contains
       end do
       do n = 1, size(deck%model%materials)
          call complete_law(n, deck, deck%model%materials(n))
+         if (melting(n) > 0) call build_melting(deck%cards%keywords(melting(n)), deck, &
+            deck%model%materials(n))
       end do
    end subroutine build_materials
 

@@ -51,8 +51,8 @@ contains
          words = '*CONTINUATION needs *THERMAL SCHEME, TYPE=IMPLICIT: with '// &
             trim(step%scheme%name)//' a state depends on the increments before'
       else if (any(has_law(model%materials))) then
-         words = '*CONTINUATION is refused with *PLASTIC and *CREEP: what a material remembers '// &
-            'depends on the loads before'
+         words = '*CONTINUATION is refused with *PLASTIC, *CREEP and *ANNEAL TEMPERATURE: what '// &
+            'a material remembers depends on the loads before'
       else if (follows_temperatures(model)) then
          words = '*CONTINUATION needs properties that are the same at all temperatures'
       else if (step%restart_frequency > 0) then
@@ -153,7 +153,8 @@ contains
       end if
       cards = cards_of(deck%cards, 'STABILITY')
       if (size(cards) > 0) call deck%error(deck%cards%keywords(cards(1))%place, '*STABILITY is '// &
-         'refused with *PLASTIC and *CREEP: whether a motion yields depends on its direction')
+         'refused with *PLASTIC, *CREEP and *ANNEAL TEMPERATURE: whether a motion yields '// &
+         'depends on its direction')
       if (.not. any(deck%model%materials%law%strains(2) > 0)) return
       cards = cards_of(deck%cards, 'CREEP')
       if (.not. any(deck%model%steps%creeps)) then
@@ -211,8 +212,8 @@ contains
          return
       end if
       if (any(has_law(deck%model%materials))) then
-         call deck%error(place, 'DILATATION is refused with *PLASTIC and *CREEP: the heat of '// &
-            'strains is that of elastic ones')
+         call deck%error(place, 'DILATATION is refused with *PLASTIC, *CREEP and *ANNEAL '// &
+            'TEMPERATURE: the heat of strains is that of elastic ones')
          return
       end if
       if (any(follows_temperature(deck%model%materials(deck%model%sections%material), &

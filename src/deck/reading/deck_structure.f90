@@ -119,7 +119,7 @@ contains
       case ('SURFACE', 'MATERIAL', 'ORIENTATION', 'AMPLITUDE', 'SURFACE INTERACTION', &
          'CONTACT PAIR')
          call report%lose(card%name, card%text('NAME'))
-      case ('ELASTIC', 'CONDUCTIVITY', 'DENSITY')
+      case ('ELASTIC', 'CONDUCTIVITY', 'DENSITY', 'SPECIFIC HEAT')
          call report%lose('*'//card%name)
       case ('EQUATION', 'COUPLING', 'KINEMATIC', 'RIGID BODY', 'PRE-TENSION SECTION')
          call report%lose('equation')

@@ -70,7 +70,7 @@ module keywords
    !> How the keywords end that ask for output.
    character(*), parameter :: output_words(3) = [character(6) :: 'OUTPUT', 'FILE', 'PRINT']
 
-   type(keyword_type), parameter :: known_keywords(95) = [ &
+   type(keyword_type), parameter :: known_keywords(97) = [ &
       keyword_type('HEADING', in_model, 0, many, ''), &
       keyword_type('OPTIONS', in_model, 0, 0, 'WIDTH=/UNITS=/LOAD=/PLANE=/ORDER=/ERRORS='), &
       keyword_type('PHYSICAL CONSTANTS', in_model, 0, 0, &
@@ -95,10 +95,12 @@ module keywords
       keyword_type('CONDUCTIVITY', in_model, 1, many, 'TYPE='), &
       keyword_type('DENSITY', in_model, 1, many, ''), &
       keyword_type('SPECIFIC HEAT', in_model, 1, many, ''), &
+      keyword_type('LATENT HEAT', in_model, 1, many, ''), &
       keyword_type('PLASTIC', in_model, 1, many, 'HARDENING=/DATA TYPE=/NUMBER BACKSTRESSES='), &
       keyword_type('CYCLIC HARDENING', in_model, 1, many, ''), &
       keyword_type('CREEP', in_model, 1, many, 'LAW='), &
       keyword_type('INELASTIC HEAT FRACTION', in_model, 0, 1, ''), &
+      keyword_type('ANNEAL TEMPERATURE', in_model, 1, 1, ''), &
       keyword_type('ORIENTATION', in_model, 1, 2, 'NAME=/SYSTEM='), &
       keyword_type('SOLID SECTION', in_model, 0, 1, &
          'ELSET=/MATERIAL=/ORIENTATION=/REF NODE=/~OFFSET=/~CONTROLS='), &
@@ -226,7 +228,7 @@ module keywords
          'heat leaves sides by *FILM and *DFLUX; only contact gaps radiate'), &
       advice_type(refused, 'ELASTIC', 'HYPERELASTIC/ANISOTROPIC HYPERELASTIC/HYPERFOAM/'// &
          'HYPOELASTIC/POROUS ELASTIC/DEFORMATION PLASTICITY/USER MATERIAL', laws), &
-      advice_type(refused, '', 'SWELLING/ANNEAL TEMPERATURE/HARDENING/VISCOELASTIC/RATE '// &
+      advice_type(refused, '', 'SWELLING/HARDENING/VISCOELASTIC/RATE '// &
          'DEPENDENT/POTENTIAL/UNIAXIAL TEST DATA/DRUCKER PRAGER/DRUCKER PRAGER HARDENING/'// &
          'DRUCKER PRAGER CREEP/MOHR COULOMB/MOHR COULOMB HARDENING/CAP PLASTICITY/'// &
          'CAP HARDENING', laws), &
@@ -334,7 +336,7 @@ module keywords
       advice_type(of_word, '', 'POISSON/YOUNG/MODULUS/STIFFNESS', &
          '*ELASTIC has Young''s modulus and Poisson''s ratio'), &
       advice_type(of_word, '', 'CAPACITY', 'heat capacity is *SPECIFIC HEAT, with *DENSITY'), &
-      advice_type(of_word, '', 'LATENT/ENTHALPY', 'no phase changes; leave it out'), &
+      advice_type(of_word, '', 'ENTHALPY/MELTING', 'heat of melting is *LATENT HEAT'), &
       advice_type(of_word, '', 'ALPHA/CTE', 'the coefficient of thermal expansion is *EXPANSION'), &
       advice_type(of_word, '', 'CONDUCTANCE/RESISTANCE', &
          'the conductance of a contact is *GAP LAW or *GAP CONDUCTANCE'), &

@@ -1,0 +1,256 @@
+!> Melting in a stage. Latent heat is held by nodes, each with a part of its elements' volumes, so
+!> that a front passes one after the other; heat contents without it stay as they are.
+!>
+!> The latent content of a node turns sharply at solidus and liquidus, so that its slope at the last
+!> solution would lead from one side to the other and back. Newton's method is led by heat instead:
+!> a solution T of the content and slope that a node has at a temperature T' moves T' to the
+!> temperature that has the heat of T and of the content there by the slope. A node that cools below
+!> the liquidus thus stops in the interval until it has given off its latent heat. C has the slopes
+!> at T': within the interval that of the content, else none.
+!>
+!> C. R. Swaminathan, V. R. Voller, Metall. Trans. B 23 (1992) 651.
+module melting
+   use element_kinds, only: element_node_count
+   use kinds, only: dp
+   use materials, only: heat_capacity, latent_content, melted_to, melting_row, melts, solid_fraction
+   use mesh, only: nodes_per_element
+   use model, only: model_type
+   use thermal_matrix, only: lumped_volumes
+   implicit none
+   private
+   public :: melting_type, solid_fractions
+
+   !> Part of the largest latent content below which that of a rounded temperature has no meaning,
+   !> where the interval is a part of it in which temperatures change
+   real(dp), parameter :: rounding = 1.0e-13_dp
+
+   !> A node of an element that melts.
+   type :: melting_node_type
+      integer :: node = 0                !! index
+      integer :: material = 0            !! index
+      integer :: row = 0                 !! latent heat that T' is in the interval of, or 0
+      real(dp) :: at = 0.0_dp            !! T' [temperature]
+      real(dp) :: volume = 0.0_dp        !! its part of the element [length^3]
+   end type melting_node_type
+
+   !> The nodes of all elements that melt.
+   type :: melting_type
+      type(melting_node_type), allocatable, private :: nodes(:)
+      logical :: acts = .false.          !! whether there are any in steps that store heat
+      logical :: changes_rows = .false.  !! whether the last move led into or out of intervals
+      logical :: jumps = .false.         !! whether any passed over a solidus or liquidus
+   contains
+      procedure :: prepare
+      procedure :: begin
+      procedure :: move
+      procedure :: slopes
+      procedure :: contents
+      procedure :: led_contents
+      procedure :: unresolved
+      procedure :: find_solid_time
+   end type melting_type
+
+contains
+
+   !> Finds the nodes that melt, none where no step stores heat.
+   pure subroutine prepare(self, model)
+      class(melting_type), intent(inout) :: self
+      type(model_type), intent(in) :: model
+      type(melting_node_type) :: node
+      real(dp) :: lumped(nodes_per_element)
+      integer :: e, i, n, q
+
+      self%acts = any(model%steps%is_transient) .and. any(melts(model%materials))
+      if (.not. self%acts) return
+      associate (mesh => model%mesh, sections => model%sections)
+         allocate (self%nodes(sum(element_node_count(mesh%element_kind), &
+            mask=melts(model%materials(sections(mesh%element_section)%material)))))
+         i = 0
+         do e = 1, size(mesh%element_kind)
+            node%material = sections(mesh%element_section(e))%material
+            if (.not. melts(model%materials(node%material))) cycle
+            n = element_node_count(mesh%element_kind(e))
+            lumped = lumped_volumes(mesh, sections, e)
+            do q = 1, n
+               i = i + 1
+               node%node = mesh%element_nodes(q, e)
+               node%volume = lumped(q)
+               self%nodes(i) = node
+            end do
+         end do
+      end associate
+      self%acts = i > 0
+   end subroutine prepare
+
+   !> Starts a stage at the temperatures at its start.
+   pure subroutine begin(self, model, temperature)
+      class(melting_type), intent(inout) :: self
+      type(model_type), intent(in) :: model
+      real(dp), intent(in) :: temperature(:)                 !! (nodes)
+      integer :: i
+
+      do i = 1, size(self%nodes)
+         associate (node => self%nodes(i))
+            node%at = temperature(node%node)
+            node%row = melting_row(model%materials(node%material), node%at)
+         end associate
+      end do
+   end subroutine begin
+
+   !> Moves T' to a solution.
+   pure subroutine move(self, model, temperature)
+      class(melting_type), intent(inout) :: self
+      type(model_type), intent(in) :: model
+      real(dp), intent(in) :: temperature(:)                 !! (nodes)
+      real(dp) :: led, least
+      integer :: i, row
+
+      self%changes_rows = .false.
+      self%jumps = .false.
+      do i = 1, size(self%nodes)
+         associate (node => self%nodes(i))
+            associate (material => model%materials(node%material), there => temperature(node%node))
+               led = led_content(model, node, there)
+               least = rounding*maxval(material%melting%capacity)*abs(there)
+               if (abs(led - latent_content(material, there)) <= least) then
+                  node%at = there
+                  cycle
+               end if
+               self%jumps = .true.
+               call melted_to(material, there, led, node%at, row)
+               self%changes_rows = self%changes_rows .or. row /= node%row
+               node%row = row
+            end associate
+         end associate
+      end do
+   end subroutine move
+
+   !> What C has of melting, on the nodes.
+   pure function slopes(self, model)
+      class(melting_type), intent(in) :: self
+      type(model_type), intent(in) :: model
+      real(dp) :: slopes(size(model%mesh%node_number))       !! (nodes) [energy/temperature]
+      integer :: i
+
+      slopes = 0.0_dp
+      do i = 1, size(self%nodes)
+         associate (node => self%nodes(i))
+            if (node%row > 0) slopes(node%node) = slopes(node%node) + node%volume* &
+               model%materials(node%material)%melting(node%row)%capacity
+         end associate
+      end do
+   end function slopes
+
+   !> Latent heat on the nodes.
+   pure function contents(self, model, temperature)
+      class(melting_type), intent(in) :: self
+      type(model_type), intent(in) :: model
+      real(dp), intent(in) :: temperature(:)                 !! (nodes)
+      real(dp) :: contents(size(temperature))                !! (nodes) [energy]
+      integer :: i
+
+      contents = 0.0_dp
+      do i = 1, size(self%nodes)
+         associate (node => self%nodes(i))
+            contents(node%node) = contents(node%node) + node%volume*latent_content( &
+               model%materials(node%material), temperature(node%node))
+         end associate
+      end do
+   end function contents
+
+   !> The same by content and slope at T'.
+   pure function led_contents(self, model, temperature) result(contents)
+      class(melting_type), intent(in) :: self
+      type(model_type), intent(in) :: model
+      real(dp), intent(in) :: temperature(:)                 !! (nodes)
+      real(dp) :: contents(size(temperature))                !! (nodes) [energy]
+      integer :: i
+
+      contents = 0.0_dp
+      do i = 1, size(self%nodes)
+         associate (node => self%nodes(i))
+            contents(node%node) = contents(node%node) + node%volume*led_content(model, node, &
+               temperature(node%node))
+         end associate
+      end do
+   end function led_contents
+
+   pure real(dp) function led_content(model, node, temperature) result(content)
+      type(model_type), intent(in) :: model
+      type(melting_node_type), intent(in) :: node
+      real(dp), intent(in) :: temperature
+
+      associate (material => model%materials(node%material))
+         content = latent_content(material, node%at)
+         if (node%row > 0) content = content + material%melting(node%row)%capacity* &
+            (temperature - node%at)
+      end associate
+   end function led_content
+
+   !> Heat that has no meaning at a node, because temperatures within the interval are rounded.
+   pure real(dp) function unresolved(self, model, temperature) result(heat)
+      class(melting_type), intent(in) :: self
+      type(model_type), intent(in) :: model
+      real(dp), intent(in) :: temperature(:)                 !! (nodes)
+      integer :: i
+
+      heat = 0.0_dp
+      do i = 1, size(self%nodes)
+         associate (node => self%nodes(i))
+            heat = max(heat, rounding*node%volume*maxval(model%materials(node%material)%melting% &
+               capacity)*abs(temperature(node%node)))
+         end associate
+      end do
+   end function unresolved
+
+   !> When the last node became solid: heat is taken to be straight in an increment. What was solid
+   !> before stays so.
+   pure subroutine find_solid_time(self, model, temperatures, instants, solid_time)
+      class(melting_type), intent(in) :: self
+      type(model_type), intent(in) :: model
+      real(dp), intent(in) :: temperatures(:, :)             !! (nodes, 2) at both ends
+      real(dp), intent(in) :: instants(2)                    !! of these [time]
+      real(dp), allocatable, intent(inout) :: solid_time(:)  !! (1) or none [time]
+      real(dp) :: contents(2), part
+      integer :: i, k
+
+      part = -1.0_dp
+      do i = 1, size(self%nodes)
+         associate (node => self%nodes(i))
+            associate (material => model%materials(node%material))
+               do k = 1, 2
+                  contents(k) = latent_content(material, temperatures(node%node, k)) + &
+                     heat_capacity(material)*(temperatures(node%node, k) - &
+                     material%melting(1)%solidus)
+               end do
+            end associate
+         end associate
+         if (contents(2) > 0.0_dp) then
+            if (allocated(solid_time)) deallocate (solid_time)
+            return
+         end if
+         if (contents(1) > 0.0_dp) part = max(part, contents(1)/(contents(1) - contents(2)))
+      end do
+      if (part >= 0.0_dp) solid_time = [instants(1) + part*(instants(2) - instants(1))]
+   end subroutine find_solid_time
+
+   !> Solid fractions on the nodes, 1 where nothing melts.
+   pure function solid_fractions(model, temperature) result(fraction)
+      type(model_type), intent(in) :: model
+      real(dp), intent(in) :: temperature(:)                 !! (nodes)
+      real(dp) :: fraction(size(temperature))                !! (nodes) [-]
+      integer :: e, m, q
+
+      fraction = 1.0_dp
+      do e = 1, size(model%mesh%element_kind)
+         m = model%sections(model%mesh%element_section(e))%material
+         if (.not. melts(model%materials(m))) cycle
+         do q = 1, element_node_count(model%mesh%element_kind(e))
+            associate (n => model%mesh%element_nodes(q, e))
+               fraction(n) = solid_fraction(model%materials(m), temperature(n))
+            end associate
+         end do
+      end do
+   end function solid_fractions
+
+end module melting

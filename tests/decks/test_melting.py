@@ -1,0 +1,150 @@
+"""Latent heat and annealing of small decks; the verification manual has fronts."""
+
+import re
+
+import numpy as np
+import pytest
+from blocks import write
+from deck_runs import assert_alike, datasets, run
+from physics import follows, judge, material, mesh
+
+KINDS = ["CPS3", "CAX4", "CPE4", "CPE4I"]
+SCHEMES = ["IMPLICIT", "GALERKIN", "CRANK-NICOLSON", "L-STABLE"]
+FILES = "VTKHDF/PointData", "history"
+
+
+def melting(rows, kind="CPS4", size=2, **more):
+    """Return a square that melts, k = rho c = 1."""
+    points = [float(x) for x in np.linspace(0.0, 1.0, size + 1)]
+    given = material("BODY", more.pop("elastic", None), conductivity=1.0, density=2.0,
+                     specific_heat=0.5, **more)
+    return [*mesh("BODY", points, points, kind), *given[:-1], "*LATENT HEAT", *rows, given[-1]]
+
+
+def step(*cards, analysis="*HEAT TRANSFER, DIRECT", times="0.25, 4."):
+    """Return a step."""
+    return ["*STEP, INC=10000", analysis, times, *cards, "*END STEP"]
+
+
+def start(value):
+    """Return the card of an initial temperature."""
+    return ["*INITIAL CONDITIONS, TYPE=TEMPERATURE", f"BODY, {value!r}"]
+
+
+@pytest.mark.changes("LATENT HEAT")
+@pytest.mark.parametrize("kind", KINDS)
+def test_a_body_that_is_cooled_evenly_gives_off_its_latent_heat(tmp_path, kind):
+    """From 50 by a power of 20 a volume: 20 to the liquidus 30, then half of what melting holds."""
+    def make(latent):
+        volume = 2 * latent          # by its density
+        within = 40.0 / (10.0 + volume) * 10.0
+        return [*melting([f"{latent!r}, 20., 30."], kind), *start(50.0),
+                *step("*DFLUX", "BODY, BF, -20.", times="0.25, 3.")], [
+            ("NT", "BODY", "1.", 30.0, 1e-8), ("NT", "BODY", "LAST", 30.0 - within, 1e-8),
+            ("SOLID", "BODY", "LAST", within / 10.0, 1e-8)]
+
+    follows(tmp_path, make, 25.0, 40.0)
+
+
+@pytest.mark.parametrize("scheme", SCHEMES)
+def test_two_rows_take_up_their_heats_one_after_the_other(tmp_path, scheme):
+    """Solid fractions are shares of the whole latent heat; the last point is solid at a time that
+    increments of one length find."""
+    cards = [f"*THERMAL SCHEME, TYPE={scheme}", *melting(["5., 10., 20.", "15., 30., 40."]),
+             *start(0.0), *step("*DFLUX", "BODY, BF, 20.", times="0.25, 4."),
+             *step("*DFLUX, OP=NEW", "BODY, BF, -20.", times="0.25, 4.25")]
+    judge(tmp_path, cards, [("NT", "BODY", "1.", 15.0, 1e-8), ("SOLID", "BODY", "1.", 0.875, 1e-8),
+                            ("NT", "BODY", "4.", 40.0, 1e-8), ("SOLID", "BODY", "4.", 0.0, 1e-8,
+                                                             "ABS"),
+                            ("NT", "BODY", "LAST", -5.0, 1e-7),
+                            ("solid_time", "", "LAST", 7.5, 1e-8)])
+
+
+@pytest.mark.parametrize("kind", ["CPE8", "CPS4"])
+def test_heat_that_leaves_is_what_a_front_gives_off(tmp_path, kind):
+    """From 1.2 to 0 through a front without an interval, in Euler's increments."""
+    cards = ["*THERMAL SCHEME, TYPE=IMPLICIT", *melting(["1., 1., 1."], kind, size=8), *start(1.2),
+             *step("*SFILM", "BODY.LEFT, F, 0., 10.", "BODY.BOTTOM, F, 0., 10.", times="0.02, 8.")]
+    process = run("run", "--quiet", write(tmp_path / "front.inp", cards), "--out", tmp_path)
+    assert process.returncode == 0, process.stderr
+    found = datasets(tmp_path / "front.vtkhdf", "history")
+    assert np.max(found["history/heat_imbalance"]) < 1e-10
+    # rho c 1.2 and rho times the latent heat; 8 is long.
+    assert np.sum(0.02 * found["history/heat_out"]) == pytest.approx(1.2 + 2.0, rel=1e-7)
+    listing = (tmp_path / "front.lst").read_text()
+    assert len(re.findall("the last point is solid at time", listing)) == 1
+    assert "the smallest interval is 1e-4 of latent over specific heat" in listing
+
+
+def test_steady_steps_say_that_latent_heat_does_nothing(tmp_path):
+    cards = [*melting(["1., 1., 2."]), *start(1.2),
+             *step("*BOUNDARY", "BODY.LEFT, 11, 11, 0.", "BODY.RIGHT, 11, 11, 3.",
+                   analysis="*HEAT TRANSFER, STEADY STATE", times="1., 1.")]
+    judge(tmp_path, cards, [("NT", "BODY.RIGHT", "LAST", 3.0, 1e-12)])
+    listing = next(tmp_path.glob("*.lst")).read_text()
+    assert "*LATENT HEAT does nothing in steps that store no heat, such as step 1" in listing
+
+
+@pytest.mark.changes("ANNEAL TEMPERATURE")
+def test_stress_begins_below_the_annealing_temperature(tmp_path):
+    def make(temperature):
+        given = material("BODY", (200e3, 0.3), expansion=1e-5)
+        return [*mesh("BODY", [0.0, 1.0], [0.0, 1.0], "CPS4"), *given[:-1], "*ANNEAL TEMPERATURE",
+                f"{temperature!r}", given[-1], *start(700.0),
+                *step("*BOUNDARY", "BODY.LEFT, 1", "BODY.RIGHT, 1", "BODY.BOTTOM, 2",
+                      "*TEMPERATURE", "BODY, 100.", analysis="*STATIC, DIRECT", times="0.3, 1.")], [
+            ("S11", "BODY", "LAST", 2.0 * (temperature - 100.0), 1e-9)]
+
+    follows(tmp_path, make, 400.0, 550.0)
+
+
+@pytest.mark.parametrize("scheme", SCHEMES)
+def test_a_solid_begins_within_the_stages_of_an_increment(tmp_path, scheme):
+    """Cooled evenly by 600, solid from 530 on, soon after an increment began."""
+    given = material("BODY", (200e3, 0.3), expansion=1e-5, conductivity=1.0, density=2.0,
+                     specific_heat=0.5)
+    cards = [f"*THERMAL SCHEME, TYPE={scheme}", *mesh("BODY", [0.0, 1.0], [0.0, 1.0], "CPS4"),
+             *given[:-1], "*ANNEAL TEMPERATURE", "530.", given[-1], *start(700.0),
+             *step("*BOUNDARY", "BODY.LEFT, 1", "BODY.RIGHT, 1", "BODY.BOTTOM, 2", "*DFLUX",
+                   "BODY, BF, -600.", analysis="*COUPLED TEMPERATURE-DISPLACEMENT, DIRECT",
+                   times="0.25, 1.")]
+    judge(tmp_path, cards, [("NT", "BODY", "LAST", 100.0, 1e-9),
+                            ("S11", "BODY", "LAST", 860.0, 1e-8)])
+
+
+def casting(*cards):
+    """Return a square that solidifies between walls, whose stress follows its temperatures."""
+    return [*melting(["1., 0.9, 1."], size=4, elastic=[(1e3, 0.3, 0.0), (500.0, 0.3, 1.0)],
+                     expansion=1e-3)[:-1], "*ANNEAL TEMPERATURE", "0.92",
+            "*SOLID SECTION, ELSET=BODY, MATERIAL=BODY", *start(1.1), *cards,
+            *step("*BOUNDARY", "BODY.LEFT, 1", "BODY.RIGHT, 1", "BODY.BOTTOM, 2",
+                  "BODY.LEFT, 11, 11, 0.", "BODY.TOP, 11, 11, 0.5", "*RESTART, WRITE, FREQUENCY=1",
+                  analysis="*COUPLED TEMPERATURE-DISPLACEMENT, LOCAL ERROR=0.01",
+                  times="0.001, 0.3")]
+
+
+def test_a_casting_goes_on_from_every_increment_with_the_same_digits(tmp_path):
+    whole = tmp_path / "casting.vtkhdf"
+    process = run("run", "--quiet", write(tmp_path / "casting.inp", casting()), "--out", tmp_path)
+    assert process.returncode == 0, process.stderr
+    times = datasets(whole, "history")["history/time"]
+    for time in times[3:-1:len(times) // 4]:
+        folder = tmp_path / str(time)
+        process = run("run", "--quiet", tmp_path / "casting.inp", "--restart",
+                      f"{whole}@{float(time)!r}", "--out", folder)
+        assert process.returncode == 0, process.stderr
+        assert_alike(datasets(whole, *FILES), datasets(folder / whole.name, *FILES), 0.0)
+
+
+def test_a_time_of_solidification_has_an_uncertainty_that_holds(tmp_path):
+    """Stefan's front, Ste = 1, over 1; an interval of 0.01 delays it by some 0.3 %."""
+    points = [float(x) for x in np.linspace(0.0, 1.0, 17)]
+    given = material("BODY", conductivity=1.0, density=1.0, specific_heat=1.0, elastic=None)
+    cards = [*mesh("BODY", points, [0.0, 1 / 16], "CPS4"), *given[:-1], "*LATENT HEAT",
+             "1., 0.99, 1.", given[-1], "*OPTIONS, ERRORS=FULL", *start(1.0),
+             *step("*BOUNDARY", "BODY.LEFT, 11, 11, 0.", times="0.005, 0.7")]
+    exact = 1.0 / (2 * 0.6200626) ** 2
+    judge(tmp_path, cards, [("solid_time", "", "LAST", exact, 0.01)])
+    listing = next(tmp_path.glob("*.lst")).read_text()
+    assert re.search(r"solid_time +\S+ +\S+", listing.split("UNCERTAINT")[-1])
+    assert "no estimate: path" not in listing
