@@ -68,8 +68,8 @@ contains
          next%edge = edge_heat_type()
          guess = next%contact
          omega_start = next%omega
-         ! A derivative of divided bodies costs a solution for each contact point: it is formed where
-         ! it is needed.
+         ! A derivative of divided bodies costs a solution for each contact point: it is formed only
+         ! where it is needed.
          first = controls
          if (heat%is_divided(bodies) .and. controls%method == method_newton) first = &
             with_method(controls, method_anderson)

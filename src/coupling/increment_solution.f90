@@ -449,7 +449,8 @@ contains
          on_tail(contact%link) = next%contact%link
          next%displacement = bodies%equilibrium%recover_kept(bodies%mechanical, data%force, on_tail)
          ! A solution that only places faces that slide needs no more than these.
-         if (data%is_corrected .or. .not. allocated(bodies%faces_at)) call fill_bodies(bodies, trial)
+         if (data%is_corrected .or. .not. allocated(bodies%faces_at)) call fill_bodies(bodies, &
+            trial)
          next%stress_temperature = next%temperature
          call remember_slip(bodies, workspace%contact, before, next)
       end associate

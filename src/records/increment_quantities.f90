@@ -4,8 +4,8 @@ module increment_quantities
    use kinds, only: dp
    use quantity_types, only: needs_branch, needs_coupling, needs_creep, needs_dilatation, &
       needs_friction_heat, needs_heat, needs_laws, needs_mechanics, needs_melting, &
-      needs_plasticity, needs_references, needs_sections, needs_stability, needs_storage, of_bodies, of_elements, &
-      of_history, of_passes, of_references, of_sections, quantity_type
+      needs_plasticity, needs_references, needs_sections, needs_stability, needs_storage, &
+      of_bodies, of_elements, of_history, of_passes, of_references, of_sections, quantity_type
    use field_recovery, only: error_record_type
    use records, only: increment_record_type, stability_record_type
    use solution_report, only: iteration_record_type
