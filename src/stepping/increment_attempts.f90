@@ -206,8 +206,8 @@ contains
    end subroutine solve_stage
 
    !> Solves a stage until contact points of faces that slide lie where its solution has these, and
-   !> faces wear by its slip. Where a turn moves the points by a part of what the turn before did, the
-   !> next one would move them by that part again.
+   !> faces wear by its slip. Where a turn moves the points by some part of what the turn before did,
+   !> the next one would move them by that part again.
    !> Errors: no such place is found, faces slide too far at once; as follow_faces.
    subroutine solve_on_faces(run, model, attempt, error)
       type(simulation_type), intent(inout) :: run
