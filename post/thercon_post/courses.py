@@ -9,12 +9,14 @@ from .style import plt
 
 LABELS = {
     "pressure": ("Pressure $p$", "stress"),
+    "force": ("Force", "force"),
     "gap": ("Gap", "length"),
     "temperature": ("Temperature of the faces", "temperature"),
     "heat": ("Heat rate", "power"),
 }
 HEAT = {"heat_in": "into the model", "heat_friction": "of friction", "heat_out": "out of it",
         "heat_stored": "stored", "heat_dilatation": "taken up by strains"}
+FORCES = {"normal_force": "normal", "shear_force": "of friction"}   # of faces that slide
 FACES = {"slave_temperature": "slave", "master_temperature": "master"}
 BANDS = "Of a face: lines are means, bands reach from the smallest to the largest value"
 DECADES = 1e-3  # of the largest heat rate, the smallest that a logarithmic axis shows
@@ -55,7 +57,10 @@ class Picture:
     def present(self):
         """Return the curves of each panel that has some: panel -> [(label, values)], values (n) or,
         over the points of the face, (n, m)."""
-        panels = {name: [("", self.contact.get(name))] for name in ("pressure", "gap")}
+        panels = {"pressure": [("", self.contact.get("pressure"))]}
+        if self.contact.slides:
+            panels["force"] = [(words, self.contact.get(key)) for key, words in FORCES.items()]
+        panels["gap"] = [("", self.contact.get("gap"))]
         panels["temperature"] = [(words, self.contact.get(key)) for key, words in FACES.items()]
         heat = [(words, self.result.history.get(key)) for key, words in HEAT.items()]
         panels["heat"] = [*heat, ("through the contact", self.contact.get("heat_rate"))]
@@ -70,7 +75,7 @@ class Picture:
             rows, columns, sharex=True, layout="constrained", squeeze=False,
             figsize=(style.DOUBLE_COLUMN * 0.5 * columns, 0.4 + 2.1 * rows),
         )
-        for axes, (name, curves), letter in zip(grid.flat, self.panels.items(), "abcd"):
+        for axes, (name, curves), letter in zip(grid.flat, self.panels.items(), "abcde"):
             if name == "heat" and self.log:
                 curves = sizes(curves)
                 self.spread(axes, curves)

@@ -10,6 +10,7 @@ SIGNED = ("xx", "yy", "zz", "xy", *PRINCIPAL, "radial", "hoop", "flux_x", "flux_
           "mode_temperature")
 ROUNDING = 1e-9  # values that differ by this part of the largest magnitude are the same
 NOTHING = 1e-6  # of the largest magnitude: what is smaller everywhere is 0
+UNSEEN = 1e-4  # of the range of temperatures: so far they may be beyond the colours
 UNIFORM = 1e-3  # of the largest magnitude: a smaller range has one colour
 WIDE = 1.8  # width over height of models whose panels are one below the other
 
@@ -49,13 +50,17 @@ def limits(values, quantity, scale):
     if quantity != "temperature":
         ends = np.percentile(values, (0.5, 99.5))
         low, high = ends if np.ptp(ends) > UNIFORM * scale else (low, high)
-    return MaxNLocator(nbins=14, steps=[1, 2, 2.5, 5, 10]).tick_values(low, high)
+    unseen = UNSEEN * (high - low) * (quantity == "temperature")
+    return MaxNLocator(nbins=14, steps=[1, 2, 2.5, 5, 10]).tick_values(low + unseen, high - unseen)
 
 
 def settle(values, levels, scale):
-    """Return values with those that are at a level but for rounding put onto it."""
+    """Return values with those that are at a level but for rounding put onto it, and those that are
+    hardly beyond the first and the last."""
     nearest = levels[np.argmin(np.abs(values[:, None] - levels), axis=1)]
-    return np.where(np.abs(values - nearest) <= ROUNDING * scale, nearest, values)
+    beyond = (values < levels[0]) | (values > levels[-1])
+    room = np.maximum(ROUNDING * scale, beyond * UNSEEN * (levels[-1] - levels[0]))
+    return np.where(np.abs(values - nearest) <= room, nearest, values)
 
 
 def colours_of(quantity, levels):

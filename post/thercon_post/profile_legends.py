@@ -109,7 +109,7 @@ def edge_looks(picture):
 def name_zones(picture, axes):
     """Name the zones above the panel, between edges and ends of pieces, by the state of most of
     their pairs."""
-    row, at = picture.rows[0], picture.coordinate
+    row, at = picture.rows[0], picture.at(picture.rows[0])
     low, high = picture.window
     names = {OPEN: "open", SLIP: "slip", STICK: "stick"}
     if picture.contact.friction == 0.0 or picture.contact.get("shear") is None:

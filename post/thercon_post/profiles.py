@@ -47,11 +47,25 @@ class Picture:
         if self.overlap and len(rows) > 1:
             raise UserError(f"profiles of '{contact.name}' overlap, so several loads would hide each "
                             "other: give one load, or name one interface with --contact")
-        whole = float(self.coordinate.min()), float(self.coordinate.max())
-        self.window = options.range or (
-            whole if self.overlap else contact.window(self.coordinate, rows, with_heat=True))
+        self.moved = {row: result.moved(contact, row, self.along) for row in rows}
+        self.slides = any(moved is not None for moved in self.moved.values())
+        self.window = options.range or self.find_window()
         self.colours = style.shades(len(contact.parts) if self.overlap else len(rows))
         self.sign = friction_sign(contact, rows)
+
+    def at(self, row):
+        """Return where the contact points are: those that follow sliding on the displaced face."""
+        moved = self.moved[row]
+        return self.coordinate if moved is None else self.coordinate + moved
+
+    def find_window(self):
+        """Return the range that is shown."""
+        if self.overlap:
+            return float(self.coordinate.min()), float(self.coordinate.max())
+        if not self.slides:
+            return self.contact.window(self.coordinate, self.rows, with_heat=True)
+        ends = [self.contact.window(self.at(row), [row], with_heat=True) for row in self.rows]
+        return min(low for low, _ in ends), max(high for _, high in ends)
 
     def draw(self, overlays):
         """Return the finished figure, with digitised figures laid over."""
@@ -76,7 +90,8 @@ class Picture:
         profile_legends.add(self, panels, kinds, overlays)
         units = self.result.units
         unit = units.names.get("length", "")
-        part = self.contact.part_words(self.coordinate, self.window, unit, self.rows)
+        part = "" if self.slides else self.contact.part_words(self.coordinate, self.window, unit,
+                                                              self.rows)
         label = units.label(f"${self.along}$", "length")
         panels[-1].set_xlabel(f"{label}\n{part}".rstrip())
         room = 0.02 * (self.window[1] - self.window[0])
@@ -99,7 +114,8 @@ class Picture:
         if self.several and friction:
             kinds = [["pressure"], friction]
         worn = [[name] for name in WORN if np.any(self.contact.get(name, 0.0) != 0.0)]
-        return kinds + ([["heat_flux"]] if flux is not None else []) + worn
+        has_flux = flux is not None and np.any(flux[self.rows])
+        return kinds + ([["heat_flux"]] if has_flux else []) + worn
 
     @property
     def several(self):
@@ -118,7 +134,7 @@ class Picture:
 
         `number` counts the loads. Returns the values that lines in the window touch.
         """
-        at, values, shown = self.coordinate, self.values(quantity, row), self.inside()
+        at, values, shown = self.at(row), self.values(quantity, row), self.inside(row)
         both = quantity == "mu_p" and self.two_signs()
         near = np.convolve(shown, [1, 1, 1])[1:-1] > 0  # lines run on to the next pairs
         drawn = np.concatenate((values[near], -values[near])) if both else values[near]
@@ -140,9 +156,9 @@ class Picture:
                 axes.plot(places, sign * heights, zorder=2, **looks)
         return drawn
 
-    def inside(self):
+    def inside(self, row):
         """Return which pairs lie inside the window."""
-        return (self.coordinate >= self.window[0]) & (self.coordinate <= self.window[1])
+        return (self.at(row) >= self.window[0]) & (self.at(row) <= self.window[1])
 
     def two_signs(self):
         """Whether friction has both signs along the contact at these loads."""
@@ -160,13 +176,13 @@ class Picture:
         edges = edges[(edges > s[0]) & (edges < s[-1])]  # no fall to zero at the face's end
         after = np.searchsorted(s, edges, side="right")
         after -= (s[after - 1] == edges) & (status[after - 2] == OPEN)
-        on_axis = self.contact.edge_on_axis(edges, self.coordinate)
-        return np.insert(self.coordinate[piece], after, on_axis), np.insert(values, after, 0.0)
+        on_axis = self.contact.edge_on_axis(edges, self.at(row))
+        return np.insert(self.at(row)[piece], after, on_axis), np.insert(values, after, 0.0)
 
     def edges(self, key, row):
         """Return the sharpened edges of a kind at one load, on the axis of the picture."""
         edges = np.atleast_1d(self.contact[key][row])
-        return self.contact.edge_on_axis(edges[~np.isnan(edges)], self.coordinate)
+        return self.contact.edge_on_axis(edges[~np.isnan(edges)], self.at(row))
 
     def mark_edges(self, axes, row, colour):
         """Mark zone edges: through the panel for one load, at its foot for several."""
@@ -226,10 +242,13 @@ def table(result, contact, rows):
     count = len(contact["x"])
     tables = []
     for row in rows:
+        places, moved = contact.places(), result.moved(contact, row, "x")
+        if moved is not None:
+            places["x"] = places["x"] + moved
         columns = {
             "increment": np.full(count, row + 1),
             "load": np.full(count, result.history["load"][row]),
-            **contact.places(),
+            **places,
             "status": contact["status"][row],
         }
         columns |= {key: contact[key][row] for key in CURVES if contact.get(key) is not None}

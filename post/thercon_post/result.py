@@ -85,6 +85,7 @@ class Contact:
     pairing: str = "NODES"
     units: dict = field(default_factory=dict)
     parts: dict = field(default_factory=dict)  # of several interfaces: the points of each
+    slides: bool = False  # whether its points follow sliding
 
     def __getitem__(self, key):
         return self.data[key]
@@ -407,7 +408,20 @@ class Result:
         friction = group.attrs.get("friction")
         need(group, friction is None or isinstance(friction, np.number), "friction is no number")
         pairing = text(group.attrs.get("pairing", "NODES"))
-        return Contact(name, data, None if friction is None else float(friction), pairing, units)
+        return Contact(name, data, None if friction is None else float(friction), pairing, units,
+                       slides="sliding" in group.attrs)
+
+    def moved(self, contact, row, along):
+        """Return how far contact points that follow sliding have moved along x or y at a row of
+        /history; None where they stay, or the file has no fields then."""
+        is_known = self.history["time"][row] in self.field_times
+        if along == "s" or not (contact.slides and is_known):
+            return None
+        displacement = self.point_data("displacement", self.field_row(row))
+        if displacement is None:
+            return None
+        of_node = dict(zip(self.cells.node_id.tolist(), displacement[:, "xy".index(along)]))
+        return np.array([of_node.get(int(node), 0.0) for node in contact["slave_node"]])
 
     def contact_data(self, group):
         """Return the datasets of a contact by name."""

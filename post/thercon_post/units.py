@@ -14,6 +14,8 @@ class Units:
                           if plain_unit(load) in (quantity, self.names.get(quantity))), None)
         if {"power", "length"} <= set(self.names):
             self.names["flux"] = f"{self.names['power']}/{self.names['length']}$^2$"
+        if {"stress", "length"} <= set(self.names):
+            self.names["force"] = f"{self.names['stress']} {self.names['length']}$^2$"
 
     def label(self, words, quantity=None):
         """Return an axis label: `words` with the unit of `quantity`, where there is one."""

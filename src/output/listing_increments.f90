@@ -184,6 +184,9 @@ contains
          if (is_told(i) .and. history_line(parts(i), record) /= '') call page%line( &
             history_line(parts(i), record))
       end do
+      if (allocated(record%drive_excess)) call page%line( &
+         '   heat of friction less work of the drive '//trim(adjustl(column(record%drive_excess, &
+         9, 2)))//' of it')
       if (allocated(record%pre_tension)) then
          if (size(record%pre_tension) > 0) call page%line('   pre-tension'// &
             in_columns(record%pre_tension, 14, 6))

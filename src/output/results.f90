@@ -484,6 +484,7 @@ contains
                call file%set(group, 'friction', &
                   model%interactions(model%contacts(i)%interaction)%friction%coefficient)
                call file%set(group, 'pairing', pairing_name(interfaces(i)%pairing))
+               if (interfaces(i)%follows_sliding) call file%set(group, 'sliding', 'FINITE')
                call write_geometry(file, group//'/', interfaces(i:i), model%mesh%node_number)
             end associate
          end do

@@ -152,6 +152,8 @@ module records
       real(dp) :: heat_stored = 0.0_dp       !! by heat capacities; NaN in a steady step [power]
       real(dp) :: heat_dilatation = 0.0_dp   !! by strains; NaN without DILATATION [power]
       real(dp) :: heat_friction = 0.0_dp     !! made by friction; NaN without it [power]
+      !> Work of friction less that of the drive, over the former, where faces slide and are heated
+      real(dp), allocatable :: drive_excess
       real(dp) :: heat_imbalance = 0.0_dp    !! of (3.4), relative to the largest rate
       !> Of (3.3) at the end of the increment, relative to the largest rate.
       real(dp) :: heat_imbalance_pointwise = 0.0_dp

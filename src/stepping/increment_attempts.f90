@@ -24,7 +24,7 @@ module increment_attempts
    use model, only: model_type
    use records, only: add_attempts, increment_record_type
    use simulation, only: simulation_type
-   use sliding_attempts, only: check_arrivals, check_slip
+   use sliding_attempts, only: check_arrivals, check_slip, compare_with_drive
    use solution_state, only: solution_state_type
    use steps, only: solves_heat, solves_mechanics
    use text, only: append, to_text
@@ -161,7 +161,7 @@ contains
       if (allocated(error)) return
       attempt%next = attempt%before
       associate (step => model%steps(run%control%step), bodies => run%bodies, &
-         next => attempt%next, record => attempt%record)
+         next => attempt%next, record => attempt%record, clock => attempt%stage%of_increment)
          next%increment_size = attempt%stage%size
          ! (3.4) asks for them at the start of the next increment, whether this one solves heat or
          ! not.
@@ -199,6 +199,10 @@ contains
             call complete_record(bodies, model, run%recovery, run%loads, attempt%data, next, record)
             run%seconds%recover = run%seconds%recover + (wall_seconds() - since)
             call warn_of_tables(model, bodies%points, record)
+            if (allocated(bodies%faces_at) .and. allocated(attempt%data%friction%heat)) call &
+               compare_with_drive(bodies, attempt%data%friction%entering(), reshape( &
+               next%displacement - run%state%displacement, shape(record%fields%displacement))/ &
+               (clock%step_time - run%control%step_time), record)
             call check_record(record, step%analysis, error)
             if (allocated(error)) return
          end if
@@ -206,8 +210,8 @@ contains
    end subroutine solve_stage
 
    !> Solves a stage until contact points of faces that slide lie where its solution has these, and
-   !> faces wear by its slip. Where a turn moves the points by some part of what the turn before did,
-   !> the next one would move them by that part again.
+   !> faces wear by its slip. Where a turn moves the points by some part of what the turn before
+   !> did, the next one would move them by that part again.
    !> Errors: no such place is found, faces slide too far at once; as follow_faces.
    subroutine solve_on_faces(run, model, attempt, error)
       type(simulation_type), intent(inout) :: run

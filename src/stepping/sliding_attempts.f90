@@ -1,5 +1,5 @@
-!> What an attempt asks of contact points that follow sliding: that they have come where they are step
-!> by step, from in front of their masters.
+!> What an attempt asks of contact points that follow sliding: that they have come where they are
+!> step by step, from in front of their masters, and what their friction takes from the drive.
 module sliding_attempts
    use contact_system, only: contact_open
    use errors, only: error_type, set_error, status_no_convergence
@@ -11,7 +11,7 @@ module sliding_attempts
    use text, only: to_text
    implicit none
    private
-   public :: check_arrivals, check_slip
+   public :: check_arrivals, check_slip, compare_with_drive
 
    real(dp), parameter :: over_spacing = 1.0e-5_dp   !! slip over a spacing that is rounding
 
@@ -65,7 +65,7 @@ contains
       type(reduced_bodies_type), intent(in) :: bodies !! with such contact points, placed
       type(model_type), intent(in) :: model
       type(solution_state_type), intent(in) :: before !! at the start of the increment
-      real(dp), intent(in) :: displacement(:)         !! (2 nodes) at which they were placed [length]
+      real(dp), intent(in) :: displacement(:)         !! (2 nodes) where they were placed [length]
       type(error_type), allocatable, intent(out) :: error
       real(dp) :: gap(size(before%omega))
       integer :: i, k
@@ -88,5 +88,22 @@ contains
          end associate
       end do
    end subroutine check_arrivals
+
+   !> Compares the work that friction turns into heat with that of supports and loads, as rates:
+   !> they differ by what bodies store. Only where faces slide in the plane.
+   pure subroutine compare_with_drive(bodies, heat, velocity, record)
+      type(reduced_bodies_type), intent(in) :: bodies         !! with contact points that are heated
+      real(dp), intent(in) :: heat(:)                         !! (n) heat of friction [power]
+      real(dp), intent(in) :: velocity(:, :)                  !! (2, nodes) [length/time]
+      type(increment_record_type), intent(inout) :: record    !! receives the difference
+      real(dp) :: work
+
+      associate (law => bodies%laws%heat)
+         if (any(law%speed >= 0.0_dp) .or. any(law%efficiency <= 0.0_dp)) return
+         work = sum(heat/law%efficiency)
+      end associate
+      if (work > 0.0_dp) record%drive_excess = (work - sum(record%fields%external_force* &
+         velocity))/work
+   end subroutine compare_with_drive
 
 end module sliding_attempts

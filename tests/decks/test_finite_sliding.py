@@ -117,6 +117,25 @@ def test_a_tie_and_another_interface_beside(tmp_path):
     assert_same_fields(slid, drawn, 1e-6)
 
 
+@pytest.mark.parametrize("pair", PAIRS)
+def test_friction_takes_the_work_of_the_drive(tmp_path, pair):
+    """Once all slips; strains are 1e-4."""
+    changes = {"*COUPLED TEMPERATURE-DISPLACEMENT, STEADY STATE": "*COUPLED TEMPERATURE-DISPLACEMENT",
+               "*CONDUCTIVITY": "*DENSITY\n1.\n*SPECIFIC HEAT\n1.\n*CONDUCTIVITY",
+               "*FRICTION": "*GAP HEAT GENERATION\n0.5\n*FRICTION",
+               "*STEP, INC": "*AMPLITUDE, NAME=SLIDE\n0., 0., 1., 1.\n*STEP, INC"}
+    text = "\n".join(sliding(1.0, pair, scale=0.1, friction=0.2, increment=0.05, direct=", DIRECT"))
+    for old, new in changes.items():
+        text = text.replace(old, new)
+    text = text.replace("*BOUNDARY\nPAD.TOP, 1, 1", "*BOUNDARY, AMPLITUDE=SLIDE\nPAD.TOP, 1, 1")
+    deck = write(tmp_path / "deck.inp", [text])
+    solve(deck)
+    parts = re.findall(r"heat of friction less work of the drive +(\S+) of it",
+                       deck.with_suffix(".lst").read_text())
+    assert len(parts) >= 20
+    assert max(abs(float(part)) for part in parts[-18:]) < 1e-3
+
+
 LOAD = 200.0
 
 

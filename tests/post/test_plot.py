@@ -281,6 +281,24 @@ def test_courses_are_means_and_ranges_over_the_face_and_the_rates_of_the_model(d
     assert np.isnan(numbers(drawn["heat_stored"])[0])
 
 
+def test_faces_that_slide_are_drawn_where_they_are_with_their_forces(draw, result, tmp_path):
+    with h5py.File(result, "r+") as file:
+        contact, points = file["contact/CYLINDER"], file["VTKHDF/PointData"]
+        contact.attrs["sliding"] = "FINITE"
+        contact["normal_force"] = np.arange(1.0, 1.0 + len(contact["pressure"]))
+        points["displacement"][:, 0] = 3.0
+        x = contact["x"][()]
+    draw("profiles", result)
+    np.testing.assert_allclose(numbers(table(tmp_path, "case.profiles.csv")["x"]), x + 3.0)
+    draw("courses", result)
+    forces = numbers(table(tmp_path, "case.courses.csv")["force_normal"])
+    np.testing.assert_array_equal(forces, np.arange(1.0, 1.0 + len(forces)))
+    with h5py.File(result, "r+") as file:
+        del file["contact/CYLINDER"].attrs["sliding"]
+    draw("profiles", result)
+    np.testing.assert_array_equal(numbers(table(tmp_path, "case.profiles.csv")["x"]), x)
+
+
 def test_rates_below_zero_are_drawn_on_a_logarithmic_axis_and_told(kept, result):
     """A body that cools stores less and less; what the axis does not show, the legend does not name."""
     with h5py.File(result, "r+") as file:

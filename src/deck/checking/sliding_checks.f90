@@ -38,9 +38,9 @@ contains
                   'SLIDING= and SMALL SLIDING contradict each other; leave one of them out')
             else if (any(deck%model%steps%nlgeom) .and. .not. (card%has('SLIDING') .or. &
                card%has('SMALL SLIDING'))) then
-               call deck%note('*CONTACT PAIR without SMALL SLIDING in a deck with NLGEOM: Abaqus '// &
-                  'follows sliding there; here contact points stay those of the undeformed mesh '// &
-                  'without SLIDING=FINITE')
+               call deck%note('*CONTACT PAIR without SMALL SLIDING in a deck with NLGEOM: '// &
+                  'Abaqus follows sliding there; here contact points stay those of the '// &
+                  'undeformed mesh without SLIDING=FINITE')
                return
             end if
          end associate
@@ -57,10 +57,10 @@ contains
 
       words = ''
       associate (contact => model%contacts(i))
-         if (contact%has_clearance) words = '*CLEARANCE: gaps are those of the displaced faces; '// &
-            'move the nodes instead'
-         if (contact%adjusts) words = 'ADJUST=: gaps are those of the displaced faces; move the '// &
-            'nodes instead'
+         if (contact%has_clearance) words = '*CLEARANCE: gaps are those of the displaced '// &
+            'faces; move the nodes instead'
+         if (contact%adjusts) words = 'ADJUST=: gaps are those of the displaced faces; move '// &
+            'the nodes instead'
          do k = 1, size(model%ties)
             if (share_a_face(model%mesh, contact, model%ties(k)%faces)) words = &
                'tie '//model%ties(k)%faces%name//' of the same face: what is tied cannot slide'
