@@ -285,6 +285,7 @@ contains
       type(connections_type), intent(in) :: points
       integer, intent(in) :: step                  !! index of the step
       type(contact_laws_type) :: laws
+      type(conductance_law_type) :: without_master   ! conducts nothing
       integer :: i
 
       associate (m => size(points%weight))
@@ -308,7 +309,7 @@ contains
       end do
       if (allocated(points%is_beyond)) then
          laws%removed = laws%removed .or. points%is_beyond
-         where (points%is_beyond) laws%conductance = conductance_law_type()
+         where (points%is_beyond) laws%conductance = without_master
       end if
       allocate (laws%reach(size(points%weight)), source=0.0_dp)
       if (allocated(laws%overlap)) laws%reach = laws%overlap%reach()
