@@ -7,9 +7,9 @@ module text
    private
    public :: string_type
    public :: others, counted, to_text, few_digits, rounded, digits_above, with_decimals
-   public :: or_blank, percent
+   public :: or_blank, percent, quoted
    public :: to_upper, without_blanks, is_same_name, read_integer, read_real, append
-   public :: is_whole, integer_fault, real_fault, largest_magnitude, split_words, quoted
+   public :: is_whole, integer_fault, real_fault, smallest_magnitude, largest_magnitude, split_words
 
    integer, parameter :: largest_exponent = 300   !! beyond it reading could overflow
    !> Magnitudes of numbers that are not 0: products of three of them stay finite.
