@@ -1,14 +1,14 @@
-!> Values of *PARAMETER that are arithmetic: numbers, earlier parameters, + - * / **, parentheses and
-!> functions, with the precedence of Python.
+!> Values of *PARAMETER that are arithmetic: numbers, earlier parameters, + - * / **, parentheses
+!> and functions, with the precedence of Python.
 module arithmetic
    use kinds, only: dp
    use name_index, only: name_index_type
    use spelling, only: known_choices, nearest_known
-   use text, only: few_digits, largest_magnitude, read_real, smallest_magnitude, split_words, &
+   use text, only: all_digits, largest_magnitude, read_real, smallest_magnitude, split_words, &
       string_type, to_upper
    implicit none
    private
-   public :: is_arithmetic, evaluate, number_as_text, arithmetic_fault_type
+   public :: is_arithmetic, evaluate, arithmetic_fault_type
 
    character(*), parameter :: digits = '0123456789'
    character(*), parameter :: letters = 'ABCDEFGHIJKLMNOPQRSTUVWXYZabcdefghijklmnopqrstuvwxyz_'
@@ -18,7 +18,7 @@ module arithmetic
    !> What is wrong with an expression.
    type :: arithmetic_fault_type
       character(:), allocatable :: message   !! in plain words; unallocated where nothing is wrong
-      character(:), allocatable :: unknown   !! name of no parameter, in upper case, if that is wrong
+      character(:), allocatable :: unknown   !! name of no parameter, if that is wrong
       integer :: at = 0                      !! byte of the expression
    end type arithmetic_fault_type
 
@@ -61,76 +61,51 @@ contains
       self%text = expression
       self%names = parameters%known()
       self%values = values
-      call read_sum(self, number)
+      call read_terms(self, '+-', number)
       if (next(self) /= '') call fail(self, self%at, 'an operator is expected here'// &
          '; put text between double quotes')
       fault = self%fault
       if (allocated(fault%message)) number = 0.0_dp
    end subroutine evaluate
 
-   !> A number with the digits that give it back when they are read.
-   pure function number_as_text(number) result(string)
-      real(dp), intent(in) :: number
-      character(:), allocatable :: string
-      character(26) :: buffer
-      real(dp) :: back
-      logical :: valid
-
-      string = '0'
-      if (abs(number) <= 0.0_dp) return
-      string = few_digits(abs(number), 15)
-      call read_real(string, back, valid)
-      if (.not. valid .or. abs(back - abs(number)) > 0.0_dp) then
-         write (buffer, '(es25.16e3)') abs(number)
-         string = trim(adjustl(buffer))
-      end if
-      if (number < 0.0_dp) string = '-'//string
-   end function number_as_text
-
-   pure recursive subroutine read_sum(self, number)
+   !> Terms of a sum, or factors of a product.
+   pure recursive subroutine read_terms(self, operators, number)
       type(reader_type), intent(inout) :: self
+      character(2), intent(in) :: operators       ! +- or */
       real(dp), intent(out) :: number
       character(:), allocatable :: operator
       real(dp) :: other
       integer :: place
 
-      call read_product(self, number)
+      operator = '+'
+      number = 0.0_dp
+      if (operators == '*/') number = 1.0_dp
+      if (operators == '*/') operator = '*'
+      place = self%at
       do
-         operator = next(self)
-         if (operator /= '+' .and. operator /= '-') return
-         place = self%at
-         call move(self, 1)
-         call read_product(self, other)
-         if (operator == '-') other = -other
-         number = number + other
-         call check(self, place, number)
-      end do
-   end subroutine read_sum
-
-   pure recursive subroutine read_product(self, number)
-      type(reader_type), intent(inout) :: self
-      real(dp), intent(out) :: number
-      character(:), allocatable :: operator
-      real(dp) :: other
-      integer :: place
-
-      call read_sign(self, number)
-      do
-         operator = next(self)
-         if (operator /= '*' .and. operator /= '/') return
-         place = self%at
-         call move(self, 1)
-         call read_sign(self, other)
-         if (operator == '*') then
-            number = number*other
-         else if (abs(other) > 0.0_dp) then
-            number = number/other
+         if (operators == '+-') then
+            call read_terms(self, '*/', other)
          else
-            call fail(self, place, 'division by zero')
+            call read_sign(self, other)
          end if
+         select case (operator)
+         case ('+')
+            number = number + other
+         case ('-')
+            number = number - other
+         case ('*')
+            number = number*other
+         case default
+            if (abs(other) > 0.0_dp) number = number/other
+            if (abs(other) <= 0.0_dp) call fail(self, place, 'division by zero')
+         end select
          call check(self, place, number)
+         operator = next(self)
+         if (operator == '' .or. operator == '**' .or. scan(operator, operators) == 0) return
+         place = self%at
+         call move(self, 1)
       end do
-   end subroutine read_product
+   end subroutine read_terms
 
    !> A sign, which binds less than ** before it and more than ** behind it.
    pure recursive subroutine read_sign(self, number)
@@ -230,7 +205,7 @@ contains
 
       place = self%at
       call move(self, 1)
-      call read_sum(self, number)
+      call read_terms(self, '+-', number)
       if (next(self) == ')') then
          call move(self, 1)
       else if (next(self) == '') then
@@ -308,7 +283,7 @@ contains
          call fail(self, place, 'unknown function '//name//known_choices(name, &
             split_words(functions)))
       end select
-      if (.not. valid) call fail(self, place, name//' of '//number_as_text(number)// &
+      if (.not. valid) call fail(self, place, name//' of '//all_digits(number)// &
          ' is not a number')
       call check(self, place, number)
    end subroutine apply

@@ -1,7 +1,7 @@
 !> *PARAMETER: names with values, used as <name> in the deck, and the command line's --set that
 !> overrides them.
 module deck_parameters
-   use arithmetic, only: arithmetic_fault_type, evaluate, is_arithmetic, number_as_text
+   use arithmetic, only: arithmetic_fault_type, evaluate, is_arithmetic
    use card_fields, only: first_text, last_text, without_quotes
    use cards, only: add_note, field_type
    use deck_report, only: deck_report_type
@@ -9,7 +9,7 @@ module deck_parameters
    use kinds, only: dp
    use name_index, only: name_index_type
    use spelling, only: nearest_known
-   use text, only: append, string_type, to_text, to_upper
+   use text, only: all_digits, append, string_type, to_text, to_upper
    use utf8, only: as_utf8
    implicit none
    private
@@ -121,7 +121,7 @@ contains
       real(dp) :: number
 
       call evaluate(value, self%names, self%values, number, fault)
-      value = number_as_text(number)
+      value = all_digits(number)
       if (.not. allocated(fault%message)) return
       value = ''
       at = place
