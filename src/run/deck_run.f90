@@ -300,7 +300,7 @@ contains
             outcome%keeps_round = .false.
             outcome%report%increments = output%results%accepted
             outcome%summary = output%summary_lines(model, interfaces)
-            outcome%results = output%members(model, interfaces)
+            if (self%command%json) outcome%results = output%members(model, interfaces)
             do i = 1, merge(size(output%run%warnings), 0, output%run%accuracy%later_round == 0)
                call append_message(outcome%messages, 'warning', self%path, &
                   output%run%warnings(i)%value)
