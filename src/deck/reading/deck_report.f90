@@ -63,7 +63,7 @@ module deck_report
       procedure :: has_errors
       procedure :: error_count
       procedure :: warnings
-      procedure :: messages
+      procedure :: messages => message_list
       procedure :: first_error
       procedure :: print => print_report
    end type deck_report_type
@@ -299,7 +299,7 @@ contains
    end subroutine print_report
 
    !> The errors and warnings in the order of the deck.
-   function messages(self) result(list)
+   function message_list(self) result(list)
       class(deck_report_type), intent(in) :: self
       type(message_type), allocatable :: list(:)
       type(printed_diagnostic_type), allocatable :: told(:)
@@ -310,7 +310,7 @@ contains
       do i = 1, size(told)
          list(i) = message_of(self, told(i))
       end do
-   end function messages
+   end function message_list
 
    function message_of(self, told) result(message)
       class(deck_report_type), intent(in) :: self
