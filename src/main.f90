@@ -2,11 +2,12 @@
 program thercon
    use, intrinsic :: iso_c_binding, only: c_int
    use, intrinsic :: iso_fortran_env, only: error_unit, output_unit
-   use command_line, only: command_check, command_help, command_trade, command_type, &
-      command_version, read_command, usage
+   use command_line, only: command_check, command_help, command_keywords, command_trade, &
+      command_type, command_version, read_command, usage
    use batch, only: run_batch
    use deck_files, only: results_of
    use deck_outcomes, only: deck_outcome_type
+   use deck_reader, only: keyword_lines
    use deck_run, only: run_deck
    use deck_trade, only: trade_deck
    use errors, only: error_type, status_deck
@@ -15,11 +16,13 @@ program thercon
    use memory_calls, only: allow_stack
    use messages, only: print_error, print_line
    use run_description, only: check_deck
+   use text, only: string_type
    use version_report, only: print_versions
    implicit none
    type(command_type) :: command
    type(deck_outcome_type) :: outcome
    type(error_type), allocatable :: error
+   type(string_type), allocatable :: lines(:)
    integer :: deck_status, i, status
 
    interface
@@ -43,6 +46,11 @@ program thercon
       do i = 1, size(usage)
          call print_line(output_unit, trim(usage(i)))
       end do
+   case (command_keywords)
+      lines = keyword_lines()
+      do i = 1, size(lines)
+         call print_line(output_unit, lines(i)%value)
+      end do
    case (command_version)
       call print_versions()
    case (command_check)
@@ -61,6 +69,7 @@ program thercon
             call catch_signals(outlives_pipes=.false.)
             call run_deck(path, command, outcome)
             status = outcome%report%status
+            if (command%json) call outcome%print_document(results_of(path, command))
             if (.not. command%quiet .and. status /= status_deck) call outcome%print(results_of( &
                path, command))
             call outcome%print_failed_checks()

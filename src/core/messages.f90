@@ -3,12 +3,43 @@
 module messages
    use, intrinsic :: iso_fortran_env, only: error_unit, output_unit
    use file_calls, only: print_text
+   use text, only: to_text
    use utf8, only: printable
    implicit none
    private
-   public :: print_line, print_error, pass_on
+   public :: print_line, print_error, pass_on, message_type, append_message
+
+   !> What is said of a deck.
+   type :: message_type
+      character(:), allocatable :: severity   !! error, warning or note
+      character(:), allocatable :: file       !! as given
+      integer :: line = 0                     !! 0 for the deck as a whole
+      integer :: column = 0                   !! character in the line, likewise
+      character(:), allocatable :: words      !! one sentence
+   contains
+      procedure :: as_line
+   end type message_type
 
 contains
+
+   !> `file:line:column: severity: words`, or `file: severity: words` for the deck as a whole.
+   pure function as_line(self) result(line)
+      class(message_type), intent(in) :: self
+      character(:), allocatable :: line
+
+      line = self%file
+      if (self%line > 0) line = line//':'//to_text(self%line)//':'//to_text(self%column)
+      line = line//': '//self%severity//': '//self%words
+   end function as_line
+
+   !> Adds a message on a deck as a whole to a list.
+   pure subroutine append_message(messages, severity, file, words)
+      type(message_type), allocatable, intent(inout) :: messages(:)   !! unallocated for none
+      character(*), intent(in) :: severity, file, words               !! as in message_type
+
+      if (.not. allocated(messages)) allocate (messages(0))
+      messages = [messages, message_type(severity, file, words=words)]
+   end subroutine append_message
 
    !> Prints one line with its control characters made visible. What goes to stderr is there at
    !> once, in its place among the lines of stdout where both go to one file.

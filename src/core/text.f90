@@ -6,10 +6,10 @@ module text
    implicit none
    private
    public :: string_type
-   public :: others, counted, to_text, few_digits, rounded, digits_above, with_decimals
-   public :: or_blank, percent
+   public :: others, counted, to_text, all_digits, few_digits, rounded, digits_above, with_decimals
+   public :: or_blank, percent, quoted
    public :: to_upper, without_blanks, is_same_name, read_integer, read_real, append
-   public :: is_whole, integer_fault, real_fault, largest_magnitude, split_words, quoted
+   public :: is_whole, integer_fault, real_fault, smallest_magnitude, largest_magnitude, split_words
 
    integer, parameter :: largest_exponent = 300   !! beyond it reading could overflow
    !> Magnitudes of numbers that are not 0: products of three of them stay finite.
@@ -78,6 +78,25 @@ contains
       string = without_end_zeros(adjustl(buffer))
       if (string == '-0') string = '0'
    end function real_to_text
+
+   !> A number with all the digits that it takes to read the same number again.
+   pure function all_digits(number) result(string)
+      real(dp), intent(in) :: number         !! finite
+      character(:), allocatable :: string    !! such as 540, 0.155 or 3.3333333333333331E-001
+      character(26) :: buffer
+      real(dp) :: back
+      integer :: status
+
+      string = '0'
+      if (abs(number) <= 0.0_dp) return
+      string = few_digits(abs(number), most_digits)
+      read (string, *, iostat=status) back
+      if (status /= 0 .or. abs(back - abs(number)) > 0.0_dp) then
+         write (buffer, '(es25.16e3)') abs(number)
+         string = trim(adjustl(buffer))
+      end if
+      if (number < 0.0_dp) string = '-'//string
+   end function all_digits
 
    !> A number >= 0 with two significant digits, or as many as given, plain where that is short.
    pure function few_digits(number, digits) result(string)

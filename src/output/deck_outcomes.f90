@@ -4,8 +4,10 @@ module deck_outcomes
    use, intrinsic :: iso_fortran_env, only: error_unit, output_unit
    use errors, only: error_type, status_deck, status_internal, status_interrupted, &
       status_no_convergence, status_ok, status_verify
+   use deck_documents, only: print_document
+   use json, only: json_type
    use kinds, only: dp
-   use messages, only: print_line
+   use messages, only: message_type, print_line
    use processes, only: file_report, reason_of, report_type, set_reason
    use records, only: increment_record_type
    use text, only: append, counted, string_type, to_text, with_decimals
@@ -36,6 +38,9 @@ module deck_outcomes
       ! Of a deck that is solved in this process.
       type(string_type), allocatable :: summary(:)         !! what it comes to, lines
       type(string_type), allocatable :: failed_checks(:)   !! one line each
+      ! For --json.
+      type(message_type), allocatable :: messages(:)
+      type(json_type) :: results                           !! at the last increment
    contains
       procedure :: note
       procedure :: note_files
@@ -44,6 +49,7 @@ module deck_outcomes
       procedure :: is_earlier
       procedure :: print => print_outcome
       procedure :: print_failed_checks
+      procedure :: print_document => print_json
    end type deck_outcome_type
 
 contains
@@ -170,6 +176,35 @@ contains
          call print_line(output_unit, '  '//lines(i)%value)
       end do
    end subroutine print_outcome
+
+   !> Prints how the run ended, and its results, as one document in JSON.
+   subroutine print_json(self, results)
+      class(deck_outcome_type), intent(in) :: self    !! the run
+      character(*), intent(in) :: results             !! path of its results without extension
+      type(json_type) :: members
+      character(:), allocatable :: list
+      integer :: comma
+
+      associate (report => self%report)
+         call members%put(self%words(), 'outcome')
+         call members%put(reason_of(report), 'reason')
+         call members%put(int(report%increments), 'increments')
+         call members%put(int(report%iterations), 'iterations')
+         call members%put(report%seconds, 'seconds')
+         call members%put(int(report%verify_passed), 'checks_passed')
+         call members%put(int(report%verify_failed), 'checks_failed')
+         call members%open('[', 'files')
+         list = trim(extensions(report%files))
+         do while (len(list) > 0)
+            comma = index(list//',', ',')
+            call members%put(results//list(:comma - 1))
+            list = list(comma + 2:)
+         end do
+         call members%close(']')
+         call members%put_members(self%results)
+         call print_document('run', self%path, int(report%status), self%messages, members)
+      end associate
+   end subroutine print_json
 
    !> Prints the checks that failed on stderr, one line each.
    subroutine print_failed_checks(self)

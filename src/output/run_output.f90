@@ -9,6 +9,7 @@ module run_output
    use accuracy_rounds, only: accuracy_rounds_type
    use contact_points, only: contact_points_type
    use errors, only: error_type
+   use json, only: json_type
    use kinds, only: dp
    use messages, only: print_line
    use listing, only: listing_type
@@ -17,7 +18,8 @@ module run_output
    use records, only: increment_record_type
    use results, only: results_type
    use run_judgement, only: run_judgement_type
-   use run_summaries, only: run_summary_type
+   use run_documents, only: put_checks, put_summary
+   use run_summaries, only: put_run, run_summary_type
    use clock, only: wall_seconds
    use solution_report, only: iteration_record_type
    use state_tables, only: state_table_type
@@ -52,6 +54,7 @@ module run_output
       procedure :: written
       procedure :: failed_checks
       procedure :: summary_lines
+      procedure :: members => members_of
    end type run_output_type
 
 contains
@@ -224,6 +227,31 @@ contains
          end do
       end associate
    end function summary_lines
+
+   !> The run at its last accepted increment as members of a document in JSON.
+   function members_of(self, model, interfaces) result(members)
+      class(run_output_type), intent(in) :: self
+      type(model_type), intent(in) :: model
+      type(contact_points_type), intent(in) :: interfaces(:) !! contact points of every interface
+      type(json_type) :: members
+      integer :: i
+
+      call put_run(members, self%run, model)
+      call put_summary(members, self%listing%summary, model, interfaces)
+      call put_checks(members, model, self%verifier)
+      associate (accuracy => self%run%accuracy)
+         if (.not. allocated(accuracy%targets)) return
+         if (size(accuracy%targets) == 0) return
+         call members%open('{', 'accuracy')
+         call members%put(or_blank(accuracy%missed) == '', 'reached')
+         call members%open('[', 'lines')
+         do i = 1, size(accuracy%targets)
+            call members%put(accuracy%targets(i)%value)
+         end do
+         call members%close(']')
+         call members%close('}')
+      end associate
+   end function members_of
 
    !> One line for each *VERIFY card that failed, and one for all that could not be judged.
    function failed_checks(self, model) result(lines)

@@ -3,6 +3,7 @@
 module run_summaries
    use local_refinement, only: hanging_count
    use hdf5_writer, only: hdf5_writer_type
+   use json, only: json_type
    use kinds, only: dp, long
    use model, only: model_type
    use model_words, only: alike_words, expansion_words, first_alike, from_to, law_words, &
@@ -11,7 +12,7 @@ module run_summaries
    use text, only: or_blank, string_type, to_text
    implicit none
    private
-   public :: run_summary_type, accuracy_words_type, run_entry_type, run_entries, write_run
+   public :: run_summary_type, accuracy_words_type, run_entry_type, run_entries, write_run, put_run
    public :: in_listing, in_check, in_times, stages
 
    ! Where an entry is told.
@@ -200,6 +201,32 @@ contains
       if (present(behind)) entry%words = entry%words//behind
       entries = [entries, entry]
    end subroutine add
+
+   !> Adds what a deck holds, with the names of the attributes of `/run` where they are there.
+   subroutine put_run(document, run, model)
+      type(json_type), intent(inout) :: document
+      type(run_summary_type), intent(in) :: run
+      type(model_type), intent(in) :: model
+      type(run_entry_type), allocatable :: entries(:)
+      character(:), allocatable :: name
+      integer :: i
+
+      entries = run_entries(run, model)
+      call document%open('{', 'model')
+      do i = 1, size(entries)
+         associate (entry => entries(i))
+            if (.not. entry%is_told(in_check)) cycle
+            name = entry%label
+            if (entry%attribute /= '') name = entry%attribute
+            if (entry%kind == 'text') then
+               call document%put(entry%words, name)
+            else
+               call document%put(entry%number, name)
+            end if
+         end associate
+      end do
+      call document%close('}')
+   end subroutine put_run
 
    !> Writes the attributes of `/run`, over those of an earlier publishing.
    subroutine write_run(file, run, model)

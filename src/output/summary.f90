@@ -47,24 +47,25 @@ module summary
 
    !> Results of the last accepted increment.
    type :: summary_type
-      private
-      integer, public :: increment = 0                             !! its number; 0 before the first
-      real(dp) :: time = 0.0_dp                                    !! total time [time]
-      real(dp) :: load = 0.0_dp                                    !! value on the load axis
-      type(contact_record_type), allocatable, public :: contacts(:)   !! (interfaces)
+      integer :: increment = 0                                !! its number; 0 before the first
+      real(dp) :: time = 0.0_dp                               !! total time [time]
+      real(dp) :: load = 0.0_dp                               !! value on the load axis
+      type(contact_record_type), allocatable :: contacts(:)   !! (interfaces)
       type(uncertainty_type), allocatable :: errors(:)        !! (interfaces) or unallocated
-      type(body_uncertainty_type), allocatable :: body_errors(:)        !! (bodies) or unallocated
-      !> Without an interface: smallest and largest temperature, heat in and out
+      type(body_uncertainty_type), allocatable :: body_errors(:)   !! (bodies) or unallocated
+      !> Smallest and largest temperature, heat in and out
       real(dp), allocatable :: heat(:)
-      !> Likewise: the largest magnitude of a displacement [length]
+      !> The largest magnitude of a displacement [length]
       real(dp), allocatable :: displacement
-      character(:), allocatable :: cycle           !! what the last cycle did, or none
-      real(dp), allocatable :: inelastic_strain(:, :)   !! (2, bodies) as in the record, or none
-      type(string_type), allocatable :: steps(:)   !! a line for each step and interface
+      character(:), allocatable, private :: cycle  !! what the last cycle did, or none
+      !> (2, bodies) as in the record, or none
+      real(dp), allocatable, private :: inelastic_strain(:, :)
+      type(string_type), allocatable, private :: steps(:)   !! a line for each step and interface
       real(dp), allocatable :: solid_time          !! when the last point became solid [time]
-      character(:), allocatable :: stability                       !! whether it lasts; or empty
-      real(dp), allocatable :: load_factor   !! of a point of a branch
-      real(dp), allocatable :: folds(:)   !! load factors of the folds so far; unallocated for none
+      character(:), allocatable :: stability       !! whether it lasts; or empty
+      real(dp), allocatable :: load_factor         !! of a point of a branch
+      !> Load factors of the folds so far; unallocated for none
+      real(dp), allocatable, private :: folds(:)
    contains
       procedure :: take
       procedure :: add_lines

@@ -9,18 +9,21 @@ module command_line
    implicit none
    private
    public :: command_type, read_command, settings_in_words, usage
-   public :: command_run, command_check, command_trade, command_help, command_version
+   public :: command_run, command_check, command_trade, command_help, command_version, &
+      command_keywords
 
    integer, parameter :: command_run = 1       !! solve
    integer, parameter :: command_check = 2     !! read and check only
    integer, parameter :: command_help = 3      !! print the usage
    integer, parameter :: command_version = 4   !! print versions
    integer, parameter :: command_trade = 5     !! measure speed against accuracy
+   integer, parameter :: command_keywords = 6  !! print the table of keywords
 
    ! For messages on misspelt words.
    character(*), parameter :: known_commands = 'run/check/trade/help'
    character(*), parameter :: known_options = '--out/--jobs/--width/--set/--limit/--accuracy/'// &
-      '--errors/--restart/--resume/--quiet/--help/--version'
+      '--errors/--restart/--resume/--quiet/--json/--help/--version/'// &
+      '--keywords'
 
    character(4), parameter :: errors_words(0:2) = ['no  ', 'last', 'full']   !! of --errors
 
@@ -31,7 +34,8 @@ module command_line
       type(string_type), allocatable :: settings(:)   !! NAME=VALUE of each --set
       character(:), allocatable :: folder             !! --out, the current folder unless given
       integer :: width = 0                            !! --width, 0 unless given
-      logical :: quiet = .false.                      !! --quiet
+      logical :: quiet = .false.                      !! --quiet or --json
+      logical :: json = .false.                       !! --json
       integer :: jobs = 1                             !! --jobs, decks or rows at a time
       logical :: is_batch = .false.                   !! run: several decks, or --jobs
       !> --limit: CPU seconds of a row, seconds of the rounds of a run [s]; 0: none is given
@@ -45,14 +49,14 @@ module command_line
    end type command_type
 
    !> Lines of --help
-   character(*), parameter :: usage(43) = [character(88) :: &
+   character(*), parameter :: usage(45) = [character(88) :: &
       'usage: thercon run DECK... [--out DIR] [--jobs N] [--width N] [--set NAME=VALUE]', &
-      '                           [--quiet] [--accuracy P%] [--limit SECONDS] [--resume]', &
-      '                           [--errors last|full|no] [--restart RESULT[@TIME]]', &
-      '       thercon check DECK... [--width N] [--set NAME=VALUE] [--quiet]', &
+      '                           [--quiet] [--json] [--accuracy P%] [--limit SECONDS]', &
+      '                           [--errors last|full|no] [--restart RESULT[@TIME]] [--resume]', &
+      '       thercon check DECK... [--width N] [--set NAME=VALUE] [--quiet] [--json]', &
       '       thercon trade DECK [--out DIR] [--width N] [--set NAME=VALUE] [--quiet]', &
       '                          [--limit SECONDS] [--jobs N]', &
-      '       thercon --help | --version', &
+      '       thercon --help | --version | --keywords', &
       '', &
       '  run      solve each deck a/b.inp; write to DIR b.vtkhdf, b.lst, b.sta, b.cvg and, with', &
       '           contact, b.contact.vtkhdf;', &
@@ -66,6 +70,7 @@ module command_line
       '  --width N          allow N columns in a card (256)', &
       '  --set NAME=VALUE   override the value of a *PARAMETER of the deck', &
       '  --quiet            print errors and warnings only', &
+      '  --json             run, check: print one JSON document (docs/results.md); one deck', &
       '  --accuracy P%      run: refine the mesh and shorten the increments until the', &
       '                     uncertainties of force, heat rate, peak pressure, edge of contact', &
       '                     are within P per cent; replaces *ACCURACY; with names only', &
@@ -79,6 +84,7 @@ module command_line
       '  --limit SECONDS    run: end the rounds of --accuracy in this time with the last whole', &
       '                     one, after the first in any case;', &
       '                     trade: skip rows that would take more CPU time (30)', &
+      '  --keywords         print the keywords of decks, their data cards and parameters', &
       '  --jobs N           solve N decks at a time, or measure N rows of a trade (1)', &
       '', &
       'exit status: 0 ok, 1 deck error, 2 no convergence, 3 internal or I/O error,', &
@@ -116,6 +122,9 @@ contains
       case ('--version')
          command%action = command_version
          return
+      case ('--keywords')
+         command%action = command_keywords
+         return
       case ('trade')
          command%action = command_trade
       case default
@@ -134,6 +143,8 @@ contains
       else if (size(command%decks) > 1 .and. command%restart /= '') then
          call set_error(error, status_deck, '--restart takes one deck; --resume takes several, '// &
             'each with its own result')
+      else if (command%json .and. (size(command%decks) > 1 .or. command%is_batch)) then
+         call set_error(error, status_deck, '--json takes one deck, without --jobs')
       else if (command%resumes .and. command%restart /= '') then
          call set_error(error, status_deck, '--resume goes on from the deck''s own result, and '// &
             '--restart from another: leave one out')
@@ -168,6 +179,12 @@ contains
       select case (word)
       case ('--quiet')
          command%quiet = .true.
+         return
+      case ('--json')
+         command%json = .true.
+         command%quiet = .true.
+         if (command%action == command_trade) call set_error(error, status_deck, &
+            'option --json does not go with trade')
          return
       case ('--resume')
          command%resumes = .true.

@@ -17,7 +17,7 @@ module deck_preparation
    use kinds, only: dp
    use load_histories, only: load_history_type
    use loads, only: loads_type
-   use messages, only: print_error, print_line
+   use messages, only: append_message, message_type, print_error, print_line
    use model, only: model_type, uncertainty_full, uncertainty_last, uncertainty_no
    use no_estimates, only: of_branches, of_path, of_sliding, reason_of_run
    use interface_reports, only: check_arc_lengths, make_interfaces, make_ties
@@ -41,6 +41,7 @@ module deck_preparation
       !> Why there is no model to solve, though there is no error; unallocated where there is one
       character(:), allocatable :: why_skipped
       type(origin_type), allocatable :: origin            !! where its run goes on from, if anywhere
+      type(message_type), allocatable :: messages(:)      !! what was printed of it
       !> With --resume: its result, where nothing is left to be solved
       type(earlier_result_type), allocatable :: finished
    end type read_deck_type
@@ -73,6 +74,8 @@ contains
       if (allocated(deck%why_skipped)) then
          call progress%clear()
          if (allocated(deck%model%steps)) call report%print(error_unit)
+         if (allocated(deck%model%steps)) deck%messages = report%messages()
+         call append_message(deck%messages, 'note', path, deck%why_skipped)
          call print_line(error_unit, path//': note: '//trim(merge('not solved', 'skipped   ', &
             allocated(deck%model%steps)))//': '//deck%why_skipped)
          return
@@ -98,11 +101,15 @@ contains
       end if
       model%warnings = report%warnings()
       call progress%clear()
-      if (report%has_errors() .or. .not. present(variation)) call report%print(error_unit)
+      if (report%has_errors() .or. .not. present(variation)) then
+         call report%print(error_unit)
+         deck%messages = report%messages()
+      end if
       if (report%has_errors()) then
          call set_error(error, status_deck, report%first_error())
       else if (allocated(error)) then
          call print_error(path, error%message)
+         call append_message(deck%messages, 'error', path, error%message)
       end if
    end subroutine prepare_deck
 

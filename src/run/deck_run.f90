@@ -17,7 +17,7 @@ module deck_run
       prepare_end
    use kinds, only: dp
    use load_histories, only: step_clock_type
-   use messages, only: print_error, print_line
+   use messages, only: append_message, print_error, print_line
    use model, only: model_type, uncertainty_full
    use processes, only: set_reason
    use records, only: increment_record_type
@@ -162,6 +162,7 @@ contains
             call prepare_deck(self%path, self%command, self%deck, self%model, self%simulation, &
                error, variation)
             is_told = allocated(error)
+            self%outcome%messages = self%deck%messages
          end if
          if (.not. (allocated(error) .or. allocated(self%model%steps))) then
             call skip(self)
@@ -258,6 +259,7 @@ contains
       type(contact_points_type), allocatable :: interfaces(:)
       type(increment_record_type) :: record
       type(state_table_type), pointer :: restart   ! disassociated for none
+      integer :: i
       logical :: moved
 
       associate (model => self%model, output => self%output, outcome => self%outcome, &
@@ -298,6 +300,11 @@ contains
             outcome%keeps_round = .false.
             outcome%report%increments = output%results%accepted
             outcome%summary = output%summary_lines(model, interfaces)
+            if (self%command%json) outcome%results = output%members(model, interfaces)
+            do i = 1, merge(size(output%run%warnings), 0, output%run%accuracy%later_round == 0)
+               call append_message(outcome%messages, 'warning', self%path, &
+                  output%run%warnings(i)%value)
+            end do
             call outcome%note_files(output%written())
          end if
          if (allocated(output_error)) then
@@ -370,8 +377,10 @@ contains
          outcome%report%verify_passed = max(outcome%report%verify_passed, run%verify_passed)
          outcome%report%verify_failed = max(outcome%report%verify_failed, run%verify_failed)
          if (outcome%report%status /= status_ok .or. run%accuracy%later_round > 0) return
-         if (run%accuracy%missed /= '') call append(outcome%failed_checks, self%path// &
-            ': error: '//run%accuracy%missed)
+         if (run%accuracy%missed /= '') then
+            call append(outcome%failed_checks, self%path//': error: '//run%accuracy%missed)
+            call append_message(outcome%messages, 'error', self%path, run%accuracy%missed)
+         end if
       end associate
    end subroutine take_checks
 
@@ -468,7 +477,10 @@ contains
          end if
          call self%outcome%fail(error)
          call self%output%progress%clear()
-         if (kept_round > 0 .or. .not. is_told) call print_error(self%path, words)
+         if (kept_round > 0 .or. .not. is_told) then
+            call print_error(self%path, words)
+            call append_message(self%outcome%messages, 'error', self%path, words)
+         end if
          inquire (file=results_of(self%path, self%command)//'.vtkhdf', exist=is_there)
          if (kept_round == 0 .and. is_told .and. is_there) call print_line(error_unit, self%path// &
             ': note: "'//results_of(self%path, self%command)//'.vtkhdf" is of an earlier run')

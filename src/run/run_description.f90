@@ -7,16 +7,18 @@ module run_description
    use contact_definitions, only: brings_friction, makes_friction_heat
    use contact_points, only: contact_points_type
    use controls, only: solver_mumps
+   use deck_documents, only: print_document
    use deck_preparation, only: prepare_deck, read_deck_type
    use errors, only: error_type
    use interface_warnings, only: gap_range
+   use json, only: json_type
    use kinds, only: dp
    use messages, only: print_line
    use model, only: model_type
    use model_words, only: alike_words, closed_law_words, first_alike, friction_heat_words, &
       friction_words, from_to, &
       open_law_words, open_words, overlap_words, pairing_words, points_words, wear_words
-   use run_summaries, only: in_check, run_entries, run_entry_type, run_summary_type
+   use run_summaries, only: in_check, put_run, run_entries, run_entry_type, run_summary_type
    use simulation, only: simulation_type
    use steps, only: analysis_coupled, solves_heat, solves_mechanics
    use text, only: counted, string_type, to_text
@@ -167,6 +169,7 @@ contains
       type(simulation_type) :: simulation
       type(run_summary_type) :: run
       type(error_type), allocatable :: error
+      type(json_type) :: members
 
       status = 0
       call prepare_deck(path, command, deck, model, simulation, error)
@@ -176,8 +179,39 @@ contains
          call describe_run(path, model, simulation, run)
          call print_deck(model, simulation, run)
       end if
+      if (command%json) then
+         if (.not. allocated(error) .and. allocated(model%steps)) then
+            call describe_run(path, model, simulation, run)
+            call put_run(members, run, model)
+            call put_interfaces(members, model, simulation)
+         end if
+         call print_document('check', path, status, deck%messages, members)
+      end if
       call simulation%release()
    end subroutine check_deck
+
+   !> Adds the contact points of every interface.
+   subroutine put_interfaces(document, model, simulation)
+      type(json_type), intent(inout) :: document
+      type(model_type), intent(in) :: model
+      type(simulation_type), intent(in) :: simulation
+      type(contact_points_type) :: points
+      real(dp) :: gaps(2)
+      integer :: i
+
+      call document%open('{', 'interfaces')
+      do i = 1, size(model%contacts)
+         call simulation%bodies%view(i, points)
+         gaps = gap_range(model%mesh, points)
+         call document%open('{', points%name)
+         call document%put(size(points%slave), 'contact_points')
+         call document%put(pairing_words(model%contacts(i)%pairing, points), 'pairing')
+         call document%put(gaps(1), 'smallest_initial_gap')
+         call document%put(gaps(2), 'largest_initial_gap')
+         call document%close('}')
+      end do
+      call document%close('}')
+   end subroutine put_interfaces
 
    subroutine print_deck(model, simulation, run)
       type(model_type), intent(in) :: model

@@ -1,5 +1,7 @@
 """What the cards of a model change: two values of each, with answers that are known."""
 
+import math
+
 import h5py
 import pytest
 from blocks import write
@@ -17,6 +19,21 @@ def test_parameter_is_a_number_a_name_or_a_part(tmp_path):
     deck = block("*PARAMETER", "load = 5., where = BODY, side = TOP, kind = MUMPS",
                  "*SOLVER, TYPE=<kind>", *static("*DSLOAD", "<where>.<SIDE>, P, <load>"))
     judge(tmp_path, deck, stressed([0.0, -5.0, 0.0]))
+
+
+def test_parameter_is_arithmetic(tmp_path):
+    """Of earlier parameters, text among them; it follows one that the command line overrides."""
+    deck = block("*PARAMETER", "base = 2., body = BODY, where = body, file = ../a-1.inc",
+                 "load = (sqrt(base*8) + 1)**2/5 - 2**-1*0, levels = 4/2 - 1",
+                 "*REFINE, LEVELS=<levels>", *static("*DSLOAD", "<where>.TOP, P, <load>"))
+    result = judge(tmp_path, deck, stressed([0.0, -5.0, 0.0]))
+    with h5py.File(result) as file:
+        assert "uniform refinements" in (tmp_path / "deck.lst").read_text()
+        assert file["run"].attrs["verify_failed"] == 0
+    load = (math.sqrt(4.5 * 8) + 1) ** 2 / 5
+    write(tmp_path / "other.inp", deck, verify(*stressed([0.0, -load, 0.0])))
+    process = run("run", "--quiet", tmp_path / "other.inp", "--out", tmp_path, "--set", "base=4.5")
+    assert process.returncode == 0, process.stderr
 
 
 @pytest.mark.changes("PARAMETER")

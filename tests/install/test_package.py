@@ -66,6 +66,8 @@ def test_the_manual_page_says_what_help_says(root):
     (["thercon", ""], {"run", "check", "trade"}),
     (["thercon", "t"], {"trade"}),
     (["thercon", "run", "--acc"], {"--accuracy"}),
+    (["thercon", "--k"], {"--keywords"}),
+    (["thercon", "check", "--js"], {"--json"}),
     (["thercon", "run", "deck.i"], {"deck.inp"}),
 ])
 def test_bash_completes_commands_options_and_files(root, tmp_path, words, offered):

@@ -312,8 +312,12 @@ contains
             call deck%need_target('element', card%data(j), 1, target, valid)
             if (valid) elements = target%members(deck%mesh%element_sets)
          end if
-         ! An unknown set may be one of lines, which has no face.
-         if (valid .or. card%data(j)%has(2)) call read_face(card%data(j), deck, face, valid)
+         if (.not. card%data(j)%has(2)) then
+            if (valid) call add_free_faces(card%data(j), elements, deck, found)
+            call named%add(spread(j, 1, found%count - named%count))
+            cycle
+         end if
+         call read_face(card%data(j), deck, face, valid)
          call check_extra(card%data(j), 2, 'element or set, face', deck)
          if (.not. valid) cycle
          call check_face(card%data(j), elements, face, deck, valid)
@@ -330,6 +334,30 @@ contains
       surface%faces = reshape([keys(order)/4, mod(keys(order), 4) + 1], [2, size(order)], &
          order=[2, 1])
    end subroutine build_surface
+
+   !> Adds the sides of elements that no other element of the mesh has.
+   subroutine add_free_faces(data, elements, deck, found)
+      type(data_card_type), intent(in) :: data
+      integer, intent(in) :: elements(:)
+      type(deck_type), intent(inout) :: deck
+      type(number_list_type), intent(inout) :: found
+      type(element_sides_type) :: sides
+      integer :: before, i, k
+
+      call check_extra(data, 2, 'element or set, face', deck)
+      if (.not. all(deck%element_valid) .or. size(elements) == 0) return
+      before = found%count
+      sides = find_sides(deck%mesh)
+      do i = 1, size(elements)
+         do k = 1, element_corner_count(deck%mesh%element_kind(elements(i)))
+            associate (owners => sides%elements(:, sides%of_element(k, elements(i))))
+               if (count(owners > 0) == 1) call found%add([4*elements(i) + k - 1])
+            end associate
+         end do
+      end do
+      if (found%count == before) call deck%error(data%place(1), &
+         'no side here is free: each belongs to another element, too')
+   end subroutine add_free_faces
 
    !> Adds the faces under the lines of a set; the first line under which there is none, or one
    !> inside a body, is an error.

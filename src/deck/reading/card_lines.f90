@@ -319,12 +319,12 @@ contains
 
       call drop_empty_end(fields)
       do i = 1, size(fields)
-         call self%parameters%substitute(fields(i), report)
-         if (self%keyword == 'PARAMETER' .and. fields(i)%undefined) then
-            call report%lose('parameter')
-         else if (self%keyword == 'PARAMETER') then
+         if (self%keyword == 'PARAMETER') then
             call self%parameters%define(fields(i), cards%notes, report)
-         else if (index(fields(i)%text, '"') > 0) then
+            cycle
+         end if
+         call self%parameters%substitute(fields(i), report)
+         if (index(fields(i)%text, '"') > 0) then
             fields(i)%text = without_quotes(fields(i)%text)
          end if
       end do

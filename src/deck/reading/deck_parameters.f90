@@ -1,13 +1,15 @@
 !> *PARAMETER: names with values, used as <name> in the deck, and the command line's --set that
 !> overrides them.
 module deck_parameters
+   use arithmetic, only: arithmetic_fault_type, evaluate, is_arithmetic
    use card_fields, only: first_text, last_text, without_quotes
    use cards, only: add_note, field_type
    use deck_report, only: deck_report_type
    use deck_source, only: place_type
+   use kinds, only: dp
    use name_index, only: name_index_type
    use spelling, only: nearest_known
-   use text, only: append, string_type, to_text, to_upper
+   use text, only: all_digits, append, string_type, to_text, to_upper
    use utf8, only: as_utf8
    implicit none
    private
@@ -60,22 +62,29 @@ contains
    end subroutine take_settings
 
    !> Takes one field `name = value` of a *PARAMETER card; a value that --set replaces is noted.
-   subroutine define(self, field, notes, report)
+   subroutine define(self, given, notes, report)
       class(deck_parameters_type), intent(inout) :: self
-      type(field_type), intent(in) :: field
+      type(field_type), intent(in) :: given                !! as written
       type(string_type), allocatable, intent(inout) :: notes(:)   !! lines for the listing
       type(deck_report_type), intent(inout) :: report      !! receives errors
       character(:), allocatable :: name, value
-      integer :: equals, setting
+      type(field_type) :: field
+      integer :: equals, first, setting
 
+      field = given
+      call self%substitute(field, report)
+      if (field%undefined) then
+         call report%lose('parameter')
+         return
+      end if
       equals = index(field%text, '=')
       if (equals < 2 .or. equals == len(field%text)) then
          call report%error(field%place, '*PARAMETER has name = value')
          return
       end if
       name = to_upper(trim(field%text(:equals - 1)))
-      value = field%text(equals + 1:)
-      value = without_quotes(value(first_text(value):))
+      first = equals - 1 + first_text(field%text(equals + 1:))
+      value = field%text(first + 1:)
       if (self%names%find(name) > 0) then
          call report%error(field%place, 'parameter '//name//' is defined twice')
          return
@@ -83,12 +92,47 @@ contains
       setting = self%settings%find(name)
       if (setting > 0) then
          call add_note(notes, 'parameter '//trim(field%text(:equals - 1))//' = '// &
-            self%setting_values(setting)%value//' by --set, in place of '//value)
+            self%setting_values(setting)%value//' by --set, in place of '//without_quotes(value))
          value = self%setting_values(setting)%value
+      else if (self%names%find(value) > 0) then
+         value = self%values(self%names%find(value))%value
+      else if (is_arithmetic(value, self%names)) then
+         ! Names that were replaced leave no columns to point at.
+         if (field%text == given%text) field%place%column = field%place%column + first
+         call compute(self, name, field%place, field%text == given%text, report, value)
+         if (len(value) == 0) return
+      else
+         value = without_quotes(value)
       end if
       call self%names%add(name)
       call append(self%values, value)
    end subroutine define
+
+   !> Replaces an expression by its value, which is empty after an error.
+   subroutine compute(self, name, place, has_columns, report, value)
+      class(deck_parameters_type), intent(in) :: self
+      character(*), intent(in) :: name                     ! of the parameter
+      type(place_type), intent(in) :: place                ! of the expression
+      logical, intent(in) :: has_columns                   ! whether it is as written
+      type(deck_report_type), intent(inout) :: report
+      character(:), allocatable, intent(inout) :: value
+      type(arithmetic_fault_type) :: fault
+      type(place_type) :: at
+      real(dp) :: number
+
+      call evaluate(value, self%names, self%values, number, fault)
+      value = all_digits(number)
+      if (.not. allocated(fault%message)) return
+      value = ''
+      at = place
+      if (has_columns) at%column = place%column + fault%at - 1
+      if (allocated(fault%unknown)) then
+         call report%missing(at, fault%message, 'parameter', fault%unknown)
+      else
+         call report%error(at, fault%message)
+      end if
+      call report%lose('parameter', name)
+   end subroutine compute
 
    !> Replaces each <name> in a field by its value; one that is not known leaves no text.
    subroutine substitute(self, field, report)

@@ -8,12 +8,13 @@ module deck_reader
    use deck_source, only: earlier_deck_type, place_type, read_lines
    use deck_structure, only: check_data_counts
    use generated_cards, only: generate_cards
+   use keywords, only: keyword_lines
    use repeated_steps, only: repeat_steps
    use text, only: append, string_type, to_text, to_upper, without_blanks
    use utf8, only: first_byte
    implicit none
    private
-   public :: read_deck, files_of_deck, keyword_of
+   public :: read_deck, files_of_deck, keyword_of, keyword_lines
 
    integer, parameter :: deepest_include = 16   !! files that may include each other
    integer, parameter :: most_files = 1000      !! of a deck, each counted as often as it is read

@@ -3,7 +3,7 @@ module deck_report
    use card_echo, only: column_of, print_card, without_numbers
    use deck_source, only: deck_source_type, place_type
    use sorting, only: sort_order
-   use messages, only: print_line
+   use messages, only: message_type, print_line
    use name_index, only: name_index_type
    use text, only: counted, string_type, to_text, to_upper
    implicit none
@@ -63,6 +63,7 @@ module deck_report
       procedure :: has_errors
       procedure :: error_count
       procedure :: warnings
+      procedure :: messages => message_list
       procedure :: first_error
       procedure :: print => print_report
    end type deck_report_type
@@ -240,6 +241,7 @@ contains
       class(deck_report_type), intent(in) :: self
       type(string_type), allocatable :: lines(:)      !! one a warning
       type(printed_diagnostic_type), allocatable :: told(:)
+      type(message_type) :: message
       integer :: i
 
       told = told_by(self)
@@ -247,7 +249,8 @@ contains
          i=1, size(told))])
       allocate(lines(size(told)))
       do i = 1, size(told)
-         lines(i)%value = first_line(self, told(i))
+         message = message_of(self, told(i))
+         lines(i)%value = message%as_line()
       end do
    end function warnings
 
@@ -273,6 +276,7 @@ contains
       class(deck_report_type), intent(in) :: self
       integer, intent(in) :: unit                     !! open for formatted output
       type(printed_diagnostic_type), allocatable :: told(:)
+      type(message_type) :: message
       integer :: i, errors
 
       told = told_by(self)
@@ -282,7 +286,8 @@ contains
             place => self%diagnostics(told(i)%index)%place)
             if (severity == severity_error) errors = errors + 1
             if (severity == severity_error .and. errors > most_errors) cycle
-            call print_line(unit, first_line(self, told(i)))
+            message = message_of(self, told(i))
+            call print_line(unit, message%as_line())
             if (place%image == 0) cycle
             associate (image => self%source%images(place%image)%value)
                call print_card(unit, image, min(place%column, len(image) + 1))
@@ -293,31 +298,44 @@ contains
          'errors that are not shown: '//to_text(errors - most_errors))
    end subroutine print_report
 
-   !> `path:line:column: severity: message`, or `path: severity: message` for the deck as a whole.
-   function first_line(self, told) result(line)
+   !> The errors and warnings in the order of the deck.
+   function message_list(self) result(list)
+      class(deck_report_type), intent(in) :: self
+      type(message_type), allocatable :: list(:)
+      type(printed_diagnostic_type), allocatable :: told(:)
+      integer :: i
+
+      told = told_by(self)
+      allocate (list(size(told)))
+      do i = 1, size(told)
+         list(i) = message_of(self, told(i))
+      end do
+   end function message_list
+
+   function message_of(self, told) result(message)
       class(deck_report_type), intent(in) :: self
       type(printed_diagnostic_type), intent(in) :: told
-      character(:), allocatable :: line
-      character(:), allocatable :: severity
+      type(message_type) :: message
 
       associate (diagnostic => self%diagnostics(told%index), source => self%source)
-         severity = 'error: '
-         if (diagnostic%severity == severity_warning) severity = 'warning: '
+         message%severity = 'error'
+         if (diagnostic%severity == severity_warning) message%severity = 'warning'
+         message%file = self%path
+         message%words = diagnostic%message
          associate (place => diagnostic%place)
-            if (place%image == 0) then
-               line = self%path//': '//severity//diagnostic%message
-            else
-               line = source%address_of(place)//':'// &
-                  to_text(column_of(source%images(place%image)%value, place%column))// &
-                  ': '//severity//diagnostic%message
+            if (place%image > 0) then
+               message%file = source%paths(source%file(place%image))%value
+               message%line = source%line(place%image)
+               message%column = column_of(source%images(place%image)%value, place%column)
             end if
          end associate
-         if (diagnostic%places > 1) line = line//' ('//to_text(diagnostic%places)//' such places)'
+         if (diagnostic%places > 1) message%words = message%words//' ('// &
+            to_text(diagnostic%places)//' such places)'
       end associate
-      if (told%more_lines > 0) line = line//' (likewise on '// &
+      if (told%more_lines > 0) message%words = message%words//' (likewise on '// &
          counted(told%more_lines, 'more line')//', the last is '// &
          self%source%words_of(place_type(told%last))//')'
-   end function first_line
+   end function message_of
 
    !> The messages in the order of the deck, one mistake on more than a few lines of a card once.
    function told_by(self) result(told)

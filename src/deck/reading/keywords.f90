@@ -2,7 +2,8 @@
 !> others, as one table.
 module keywords
    use spelling, only: full_word
-   use text, only: append, is_same_name, split_words, string_type, to_upper, without_blanks
+   use text, only: append, is_same_name, split_words, string_type, to_text, to_upper, &
+      without_blanks
    implicit none
    private
    public :: keyword_type, known_keywords, find_keyword, known_names
@@ -11,6 +12,7 @@ module keywords
    public :: known_parameter_type, find_parameter, find_abbreviated, parameter_names, is_output
    public :: advice_type, find_advice, word_advice, is_word
    public :: no_advice, passed_over, not_printed, refused_with_data
+   public :: keyword_lines
 
    integer, parameter :: built = 1        !! understood
    integer, parameter :: not_needed = 2   !! read, and means nothing to this program
@@ -386,6 +388,53 @@ contains
          end do
       end do
    end function known_names
+
+   !> The table of keywords as text, a line each behind that of the heads: name, where it may be,
+   !> numbers of data cards, parameters; those that mean nothing are in parentheses.
+   pure function keyword_lines() result(lines)
+      type(string_type) :: lines(0:size(known_keywords))
+      character(*), parameter :: sections(3) = [character(13) :: 'model', 'step', 'model or step']
+      type(string_type), allocatable :: entries(:)
+      type(keyword_type) :: known
+      type(known_parameter_type) :: parameter
+      character(:), allocatable :: cards, parameters
+      integer :: i, k
+
+      lines(0)%value = row('keyword', 'where', 'data cards', 'parameters')
+      do i = 1, size(known_keywords)
+         known = known_keywords(i)
+         cards = to_text(known%least_data)
+         if (known%most_data == many) then
+            cards = cards//' or more'
+         else if (known%most_data > known%least_data) then
+            cards = cards//' to '//to_text(known%most_data)
+         end if
+         parameters = ''
+         entries = split_words(trim(known%parameters))
+         do k = 1, size(entries)
+            parameter = parsed_entry(entries(k)%value)
+            if (parameter%needs_value) then
+               parameter%name = parameter%name//'='
+            else if (parameter%takes_value) then
+               parameter%name = parameter%name//'[=]'
+            end if
+            if (parameter%status == not_needed) parameter%name = '('//parameter%name//')'
+            parameters = parameters//', '//parameter%name
+         end do
+         lines(i)%value = row('*'//known%name, sections(known%section), cards, parameters(3:))
+      end do
+   contains
+      pure function row(name, section, cards, parameters) result(line)
+         character(*), intent(in) :: name, section, cards, parameters
+         character(:), allocatable :: line
+         character(65) :: columns
+
+         columns(:37) = name
+         columns(38:52) = section
+         columns(53:) = cards
+         line = trim(columns//parameters)
+      end function row
+   end function keyword_lines
 
    !> Names of the parameters of a keyword.
    pure function parameter_names(known) result(names)

@@ -1,0 +1,213 @@
+!> A run as one document in JSON, which `--json` prints: its results at the last increment, with
+!> their uncertainties, and its checks. docs/results.md describes it.
+module run_documents
+   use contact_points, only: contact_points_type
+   use contact_quantities, only: contact_table, contact_values, estimated, has_quantity
+   use contact_system, only: contact_open
+   use field_quantities, only: maxima
+   use interface_quantities, only: is_end_of_face
+   use json, only: json_type
+   use kinds, only: dp
+   use model, only: model_type
+   use no_estimates, only: no_reason, reason_inside_step, words_of_reason
+   use quantity_types, only: of_interface, quantity_type
+   use records, only: uncertainty_type
+   use summary, only: summary_type
+   use text, only: or_blank
+   use unit_labels, only: unit_in_words
+   use verification, only: verifier_type
+   implicit none
+   private
+   public :: put_summary, put_checks
+
+contains
+
+   !> Adds the results of the last increment; before the first one its number 0 alone.
+   subroutine put_summary(document, summary, model, interfaces)
+      type(json_type), intent(inout) :: document
+      type(summary_type), intent(in) :: summary
+      type(model_type), intent(in) :: model
+      type(contact_points_type), intent(in) :: interfaces(:)   !! contact points of every interface
+      integer :: i
+
+      call document%open('{', 'summary')
+      call document%put(summary%increment, 'increment')
+      if (summary%increment > 0) then
+         call document%put(summary%time, 'time')
+         call document%put(summary%load, 'load')
+         call document%put(or_blank(model%load_label), 'load_label')
+         if (allocated(summary%load_factor)) call document%put(summary%load_factor, 'load_factor')
+         if (summary%stability /= '') call document%put(summary%stability, 'stability')
+         call document%open('{', 'interfaces')
+         do i = 1, size(interfaces)
+            call put_interface(document, summary, model, interfaces(i), i)
+         end do
+         call document%close('}')
+         call put_fields(document, summary, model)
+         call put_bodies(document, summary, model)
+      end if
+      call document%close('}')
+   end subroutine put_summary
+
+   subroutine put_interface(document, summary, model, points, i)
+      type(json_type), intent(inout) :: document
+      type(summary_type), intent(in) :: summary
+      type(model_type), intent(in) :: model
+      type(contact_points_type), intent(in) :: points
+      integer, intent(in) :: i                       ! number of the interface
+      type(quantity_type) :: quantity
+      real(dp) :: value(1)
+      integer :: k, q
+
+      call document%open('{', points%name)
+      associate (contact => summary%contacts(i))
+         call document%put(size(contact%contact_state), 'contact_points')
+         call document%put(count(contact%contact_state /= contact_open), 'closed_contact_points')
+         do k = 1, size(contact_table)
+            quantity = contact_table(k)
+            if (quantity%kind /= of_interface .or. quantity%values > 1) cycle
+            if (.not. has_quantity(contact, quantity%needs)) cycle
+            value = contact_values(quantity%name, contact)
+            call open_quantity(document, quantity, value(1), model)
+            do q = size(estimated), 1, -1
+               if (estimated(q)%name == quantity%name) exit
+            end do
+            if (is_end_of_face(quantity, points, value(1))) then
+               call document%put('end of the face', 'no_estimate')
+            else if (q > 0 .and. allocated(summary%errors)) then
+               call put_uncertainty(document, summary%errors(i), q)
+            else if (q > 0) then
+               call document%put(words_of_reason(reason_inside_step(model)), 'no_estimate')
+            end if
+            call document%close('}')
+         end do
+      end associate
+      call document%close('}')
+   end subroutine put_interface
+
+   !> Ranges of the fields.
+   subroutine put_fields(document, summary, model)
+      type(json_type), intent(inout) :: document
+      type(summary_type), intent(in) :: summary
+      type(model_type), intent(in) :: model
+      character(*), parameter :: names(4) = [character(19) :: 'lowest_temperature', &
+         'highest_temperature', 'heat_in', 'heat_out']
+      character(*), parameter :: units(4) = [character(11) :: 'temperature', 'temperature', &
+         'power', 'power']
+      integer :: k
+
+      call document%open('{', 'fields')
+      if (allocated(summary%heat)) then
+         do k = 1, size(names)
+            call put_plain(trim(names(k)), summary%heat(k), units(k))
+         end do
+      end if
+      if (allocated(summary%displacement)) call put_plain('largest_displacement', &
+         summary%displacement, 'length')
+      call document%close('}')
+   contains
+      subroutine put_plain(name, value, unit)
+         character(*), intent(in) :: name, unit
+         real(dp), intent(in) :: value
+
+         call document%open('{', name)
+         call document%put(value, 'value')
+         call document%put(unit_in_words(unit, model%units), 'unit')
+         call document%close('}')
+      end subroutine put_plain
+   end subroutine put_fields
+
+   !> Maxima of the bodies; none where nothing is estimated.
+   subroutine put_bodies(document, summary, model)
+      type(json_type), intent(inout) :: document
+      type(summary_type), intent(in) :: summary
+      type(model_type), intent(in) :: model
+      type(quantity_type) :: quantity
+      integer :: b, k, q
+
+      call document%open('[', 'bodies')
+      if (allocated(summary%body_errors)) then
+         do b = 1, size(summary%body_errors)
+            call document%open('{')
+            associate (errors => summary%body_errors(b), number => model%mesh%node_number)
+               do q = 1, size(maxima)
+                  if (errors%node(q) == 0) cycle
+                  quantity = maxima(q)
+                  call open_quantity(document, quantity, errors%value(q), model)
+                  call document%put(number(errors%node(q)), 'node')
+                  call put_uncertainty(document, errors, q)
+                  call document%close('}')
+               end do
+               call document%open('[', 'singular_corners')
+               do k = 1, size(errors%corners)
+                  call document%put(number(errors%corners(k)))
+               end do
+               call document%close(']')
+            end associate
+            call document%close('}')
+         end do
+      end if
+      call document%close(']')
+   end subroutine put_bodies
+
+   !> Begins the object of a quantity; the caller closes it.
+   subroutine open_quantity(document, quantity, value, model)
+      type(json_type), intent(inout) :: document
+      type(quantity_type), intent(in) :: quantity
+      real(dp), intent(in) :: value
+      type(model_type), intent(in) :: model
+
+      call document%open('{', trim(quantity%name))
+      call document%put(value, 'value')
+      call document%put(unit_in_words(quantity%unit, model%units), 'unit')
+   end subroutine open_quantity
+
+   !> The uncertainty of a quantity, or why there is none.
+   subroutine put_uncertainty(document, errors, q)
+      type(json_type), intent(inout) :: document
+      class(uncertainty_type), intent(in) :: errors
+      integer, intent(in) :: q                       ! the quantity
+
+      if (errors%no_estimate(q) == no_reason) then
+         call document%put(errors%total(q), 'uncertainty')
+      else
+         call document%put(words_of_reason(errors%no_estimate(q)), 'no_estimate')
+      end if
+   end subroutine put_uncertainty
+
+   !> Adds the *VERIFY checks in the order of the deck.
+   subroutine put_checks(document, model, verifier)
+      type(json_type), intent(inout) :: document
+      type(model_type), intent(in) :: model
+      type(verifier_type), intent(in) :: verifier
+      integer :: i
+
+      call document%open('[', 'checks')
+      do i = 1, size(verifier%outcomes)
+         associate (check => model%verifications(i), outcome => verifier%outcomes(i))
+            call document%open('{')
+            call document%put(trim(check%quantity), 'quantity')
+            call document%put(check%where, 'where')
+            call document%put(check%address, 'address')
+            call document%put(check%value, 'expected')
+            call document%put(check%tolerance, 'tolerance')
+            call document%put(trim(merge('relative', 'absolute', check%relative)), 'kind')
+            call document%put(outcome%passed, 'passed')
+            if (outcome%reason /= '') then
+               call document%put(outcome%reason, 'reason')
+            else
+               call document%put(outcome%time, 'time')
+               call document%put(outcome%found, 'found')
+               call document%put(outcome%deviation, 'deviation')
+            end if
+            if (outcome%no_estimate /= no_reason) call document%put(words_of_reason( &
+               outcome%no_estimate), 'no_estimate')
+            if (allocated(outcome%uncertainty)) call document%put(outcome%uncertainty, &
+               'uncertainty')
+            call document%close('}')
+         end associate
+      end do
+      call document%close(']')
+   end subroutine put_checks
+
+end module run_documents
