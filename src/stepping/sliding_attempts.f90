@@ -65,7 +65,7 @@ contains
       type(reduced_bodies_type), intent(in) :: bodies !! with such contact points, placed
       type(model_type), intent(in) :: model
       type(solution_state_type), intent(in) :: before !! at the start of the increment
-      real(dp), intent(in) :: displacement(:)         !! (2 nodes) at which they were placed [length]
+      real(dp), intent(in) :: displacement(:)         !! (2 nodes) where they were placed [length]
       type(error_type), allocatable, intent(out) :: error
       real(dp) :: gap(size(before%omega))
       integer :: i, k
@@ -89,8 +89,8 @@ contains
       end do
    end subroutine check_arrivals
 
-   !> Compares the work that friction turns into heat with that of supports and loads, both as rates:
-   !> they differ by what bodies store. Only where faces slide in the plane.
+   !> Compares the work that friction turns into heat with that of supports and loads, both as
+   !> rates: they differ by what bodies store. Only where faces slide in the plane.
    pure subroutine compare_with_drive(bodies, heat, velocity, record)
       type(reduced_bodies_type), intent(in) :: bodies         !! with contact points that are heated
       real(dp), intent(in) :: heat(:)                         !! (n) heat of friction [power]
