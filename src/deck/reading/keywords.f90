@@ -41,7 +41,7 @@ module keywords
       integer :: section             !! in_model, in_step or in_both
       integer :: least_data          !! fewest data cards
       integer :: most_data           !! most data cards
-      character(200) :: parameters   !! its parameters
+      character(240) :: parameters   !! its parameters
    end type keyword_type
 
    !> One parameter of a keyword.
