@@ -83,9 +83,9 @@ contains
             'with ends, and one of these is a closed ring; leave a part of it out', &
             definition%card)
       else if (size(masters) > 1) then
-         call set_error(error, status_deck, definition%title()//': SLIDING=FINITE needs a master '// &
-            'of one line, and surface '//mesh%surfaces(definition%master)%name//' has several; '// &
-            'make a surface and a *CONTACT PAIR of each', definition%card)
+         call set_error(error, status_deck, definition%title()//': SLIDING=FINITE needs a '// &
+            'master of one line, and surface '//mesh%surfaces(definition%master)%name// &
+            ' has several; make a surface and a *CONTACT PAIR of each', definition%card)
       end if
    end subroutine check_lines
 
