@@ -161,14 +161,15 @@ contains
             associate (s => arc_lengths(x, n, .false.), edge => edge_lengths(x, n, .false.), &
                weight => tributary_areas(x(:, ::step), merge(n, 2, step == 1), .false., &
                section), along => chain_tangents(x, n, .false.))
-               if (i > 1) start = start + norm2(x(:, 1) - mesh%coordinates(:, &
-                  slaves(i - 1)%nodes(size(slaves(i - 1)%nodes))))
                points%arc_length = [points%arc_length, start + s(::step)]
                points%edge = [points%edge, edge(::step)]
                points%weight = [points%weight, weight]
                points%tangent = reshape([points%tangent, along(:, ::step)], &
                   [2, size(points%weight)])
                start = start + s(size(s))
+               ! Straight on to the next line.
+               if (i < size(slaves)) start = start + norm2(mesh%coordinates(:, &
+                  slaves(i + 1)%nodes(1)) - x(:, size(s)))
             end associate
          end associate
       end do
