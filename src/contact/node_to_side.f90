@@ -59,7 +59,7 @@ contains
          feet%nodes)
       call set_node_pairs(drawn, definition, slave, feet, thickness, points, error)
       if (allocated(error)) return
-      call take_shapes(mesh, master, foot(kept), points)
+      call take_shapes(mesh, master, foot, kept, points)
    end subroutine set_nodes_on_sides
 
    !> The points that the normals of the slave's nodes meet; the node's own place where they meet
@@ -113,36 +113,40 @@ contains
 
    !> Gives contact points the nodes of the master's sides; its nodes have contact quantities
    !> between those of the contact points beside them.
-   pure subroutine take_shapes(mesh, master, foot, points)
+   pure subroutine take_shapes(mesh, master, foot, kept, points)
       type(mesh_type), intent(in) :: mesh
       type(surface_chain_type), intent(in) :: master
-      type(foot_type), intent(in) :: foot(:)                  ! of each contact point
+      type(foot_type), intent(in) :: foot(:)                  ! of each node
+      integer, intent(in) :: kept(:)                          ! those of the contact points
       type(contact_points_type), intent(inout) :: points
       type(sum_list_type) :: difference, mean
-      real(dp) :: s(size(master%nodes)), share
+      real(dp) :: along(size(kept)), s(size(master%nodes)), share
       integer :: i, k
 
-      call difference%reserve(size(foot), 4*size(foot))
-      call mean%reserve(size(foot), 3*size(foot))
-      do k = 1, size(foot)
-         call difference%add([points%slave(k), foot(k)%nodes], [1.0_dp, -foot(k)%shape])
-         call mean%add(foot(k)%nodes, foot(k)%shape)
-         points%master(k) = foot(k)%nodes(maxloc(foot(k)%shape, dim=1))
+      call difference%reserve(size(kept), 4*size(kept))
+      call mean%reserve(size(kept), 3*size(kept))
+      do k = 1, size(kept)
+         associate (at => foot(kept(k)))
+            call difference%add([points%slave(k), at%nodes], [1.0_dp, -at%shape])
+            call mean%add(at%nodes, at%shape)
+            points%master(k) = at%nodes(maxloc(at%shape, dim=1))
+         end associate
       end do
       points%difference = difference
       points%master_mean = mean
+      along = foot(kept)%s
       s = arc_lengths(mesh%coordinates(:, master%nodes), master%side_nodes, master%closed)
       points%face_node = [points%slave, master%nodes]
       call points%at_face_nodes%reserve(size(points%face_node), 2*size(points%face_node))
-      do k = 1, size(foot)
+      do k = 1, size(kept)
          call points%at_face_nodes%add([k], [1.0_dp])
       end do
       do i = 1, size(s)
-         k = count(foot%s <= s(i))
-         if (k == 0 .or. k == size(foot)) then
+         k = count(along <= s(i))
+         if (k == 0 .or. k == size(kept)) then
             call points%at_face_nodes%add([integer ::], [real(dp) ::])
          else
-            share = (s(i) - foot(k)%s)/(foot(k + 1)%s - foot(k)%s)
+            share = (s(i) - along(k))/(along(k + 1) - along(k))
             call points%at_face_nodes%add([k, k + 1], [1.0_dp - share, share])
          end if
       end do
