@@ -36,9 +36,14 @@ contains
    pure subroutine append_message(messages, severity, file, words)
       type(message_type), allocatable, intent(inout) :: messages(:)   !! unallocated for none
       character(*), intent(in) :: severity, file, words               !! as in message_type
+      type(message_type) :: message
 
+      ! gfortran never frees the components of a constructor within another one.
+      message%severity = severity
+      message%file = file
+      message%words = words
       if (.not. allocated(messages)) allocate (messages(0))
-      messages = [messages, message_type(severity, file, words=words)]
+      messages = [messages, message]
    end subroutine append_message
 
    !> Prints one line with its control characters made visible. What goes to stderr is there at

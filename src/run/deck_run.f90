@@ -301,10 +301,13 @@ contains
             outcome%report%increments = output%results%accepted
             outcome%summary = output%summary_lines(model, interfaces)
             if (self%command%json) outcome%results = output%members(model, interfaces)
-            do i = 1, merge(size(output%run%warnings), 0, output%run%accuracy%later_round == 0)
-               call append_message(outcome%messages, 'warning', self%path, &
-                  output%run%warnings(i)%value)
-            end do
+            ! There are none before the summary of a run is made.
+            if (allocated(output%run%warnings) .and. output%run%accuracy%later_round == 0) then
+               do i = 1, size(output%run%warnings)
+                  call append_message(outcome%messages, 'warning', self%path, &
+                     output%run%warnings(i)%value)
+               end do
+            end if
             call outcome%note_files(output%written())
          end if
          if (allocated(output_error)) then

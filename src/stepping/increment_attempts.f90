@@ -210,8 +210,7 @@ contains
    end subroutine solve_stage
 
    !> Solves a stage until contact points of faces that slide lie where its solution has these, and
-   !> faces wear by its slip. Where a turn moves the points by some part of what the turn before
-   !> did, the next one would move them by that part again.
+   !> faces wear by its slip.
    !> Errors: no such place is found, faces slide too far at once; as follow_faces.
    subroutine solve_on_faces(run, model, attempt, error)
       type(simulation_type), intent(inout) :: run
@@ -220,27 +219,23 @@ contains
       type(error_type), allocatable, intent(out) :: error
       integer :: turn
       logical :: is_placed, is_worn
-      real(dp) :: before, moved          ! in the turn before and in this one, of the spacing
 
       if (allocated(attempt%omega_start)) deallocate (attempt%omega_start)
-      before = 0.0_dp
       do turn = 1, most_turns
          call solve_corrected(run, model, attempt, error)
          if (allocated(error)) return
          if (.not. solves_mechanics(model%steps(run%control%step)%analysis)) return
-         moved = 0.0_dp
-         if (allocated(run%bodies%faces_at)) moved = &
-            run%bodies%displaced_by(attempt%next%displacement)
+         is_placed = .true.
+         if (allocated(run%bodies%faces_at)) is_placed = &
+            run%bodies%displaced_by(attempt%next%displacement) <= same_place
          is_worn = .true.
          if (allocated(run%bodies%worn)) call follow_wear(run, attempt, is_worn)
-         is_placed = moved <= same_place .or. moved**2 <= same_place*before
          if (is_placed .and. is_worn) then
             call end_turns(run, model, attempt, error)
             return
          end if
          attempt%next%contact%slip_origin = attempt%before%contact%slip_origin
          attempt%omega_start = attempt%next%omega
-         before = moved
          if (is_placed) cycle
          call run%place_faces(model, attempt%next%displacement, error)
          if (.not. allocated(error)) call check_arrivals(run%bodies, model, attempt%before, &

@@ -360,6 +360,13 @@ def test_the_force_of_a_pin_grows_by_the_friction_of_its_seat(tmp_path):
     assert force[high] - force[low] == pytest.approx(grown, rel=0.01)
 
 
+def worn_pad():
+    """Archard's law: K times force times slip for 20000 cycles, and the force of the pressure."""
+    force = 5.0 * 20.0 * 10.0
+    return {("worn_volume_slave", "SEAT", "LAST"): 1e-8 * 20000 * force * 40.0,
+            ("normal_force", "SEAT", "LAST"): force}
+
+
 def valve_stem():
     """Lame's pressure of the overlap."""
     pressure = lame.press_fit(0.0, 4.0, 8.0, (2.1e5, 0.3), (1.1e5, 0.34), 0.002, "stress")
