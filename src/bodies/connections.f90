@@ -103,7 +103,7 @@ contains
       type(contact_points_type), intent(out) :: points
       type(error_type), allocatable, intent(out) :: error
       real(dp), intent(in), optional :: displacement(:)   !! (2 nodes), without it none [length]
-      real(dp) :: none(2*size(model%mesh%node_number)), thickness
+      real(dp) :: thickness
 
       thickness = thickness_at(model, model%contacts(i)%slave)
       associate (contact => model%contacts(i))
@@ -112,8 +112,8 @@ contains
          else if (present(displacement)) then
             call place_points(model%mesh, contact, thickness, displacement, points, error)
          else
-            none = 0.0_dp
-            call place_points(model%mesh, contact, thickness, none, points, error)
+            call place_points(model%mesh, contact, thickness, spread(0.0_dp, 1, &
+               2*size(model%mesh%node_number)), points, error)
          end if
       end associate
    end subroutine match_surfaces
