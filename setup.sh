@@ -208,7 +208,7 @@ draw() { "$venv/bin/python" "$root/post/plot" "$@" >/dev/null; }
 
 draw_cylinder() {
    local result=$1/cylinder.vtkhdf picture
-   is_newer "$1/.drawn" "$result" "$root/post" && return
+   is_newer "$1/.drawn" "$result" "$root/post" "$root/python" && return
    say "drawing the figures"
    for picture in mesh zones fields convergence; do
       draw "$picture" "$result" --out "$1"

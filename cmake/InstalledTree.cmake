@@ -9,9 +9,9 @@ set_target_properties(thercon PROPERTIES
    BUILD_WITH_INSTALL_RPATH TRUE)
 set(installed_folder "${CMAKE_INSTALL_DATADIR}/thercon")
 install(TARGETS thercon RUNTIME)
-install(DIRECTORY docs input post DESTINATION "${installed_folder}" USE_SOURCE_PERMISSIONS
+install(DIRECTORY docs input post python DESTINATION "${installed_folder}" USE_SOURCE_PERMISSIONS
    PATTERN "__pycache__" EXCLUDE)
-install(FILES README.md CHANGELOG.md LICENSE DESTINATION "${installed_folder}")
+install(FILES README.md CHANGELOG.md LICENSE pyproject.toml DESTINATION "${installed_folder}")
 file(MAKE_DIRECTORY "${PROJECT_BINARY_DIR}/links")
 foreach(name IN ITEMS plot report compare)
    file(CREATE_LINK "../${installed_folder}/post/${name}"

@@ -9,7 +9,7 @@ from pathlib import Path
 from deck_runs import INPUT, run
 from pictures import save
 from report import DOCUMENT, Picture, Table
-from thercon_post import style, trade
+from thercon.post import style, trade
 
 TITLE = "Speed for accuracy, measured"
 TEXT = """

@@ -18,10 +18,10 @@ import pytest
 from blocks import write
 from deck_runs import DECKS, PATIENCE, run
 
-sys.path.insert(0, str(DECKS.parents[1] / "post"))
+sys.path.insert(0, str(DECKS.parents[1] / "python"))
 
-from thercon_post.comparison.print_file import read_calculix_dat  # noqa: E402
-from thercon_post.comparison.series import KEYS  # noqa: E402
+from thercon.post.comparison.print_file import read_calculix_dat  # noqa: E402
+from thercon.post.comparison.series import KEYS  # noqa: E402
 
 # Numbers that name a row of thercon's listing.
 ROW = {"NODES": 1, "INTEGRATION POINTS": 2, "TOTALS": 0}

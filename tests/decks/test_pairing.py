@@ -7,8 +7,8 @@ import numpy as np
 import pytest
 from deck_runs import DECKS, run, solve
 
-sys.path.append(str(DECKS.parents[1] / "post"))
-from thercon_post.result import Result  # noqa: E402  its folder is made known first
+sys.path.append(str(DECKS.parents[1] / "python"))
+from thercon.post.result import Result  # noqa: E402  its folder is made known first
 
 MODEL = """*MATERIAL, NAME=M
 *ELASTIC

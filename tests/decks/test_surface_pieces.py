@@ -11,8 +11,8 @@ from deck_runs import DECKS, HERTZ, run, solve
 from physics import material, mesh
 from test_restart import assert_same, go_on
 
-sys.path.append(str(DECKS.parents[1] / "post"))
-from thercon_post.result import Result  # noqa: E402  its folder is made known first
+sys.path.append(str(DECKS.parents[1] / "python"))
+from thercon.post.result import Result  # noqa: E402  its folder is made known first
 
 ROUNDING = 1e-9   # of the largest value: one deck in another order of contact points
 COUPLED = "*COUPLED TEMPERATURE-DISPLACEMENT, STEADY STATE\n0.25, 1."

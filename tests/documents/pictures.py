@@ -5,9 +5,9 @@ from pathlib import Path
 
 from PIL import Image
 
-sys.path.append(str(Path(__file__).resolve().parents[2] / "post"))
-from thercon_post import style  # noqa: E402  its folder is made known first
-from thercon_post.style import DOUBLE_COLUMN, plt  # noqa: E402
+sys.path.append(str(Path(__file__).resolve().parents[2] / "python"))
+from thercon.post import style  # noqa: E402  its folder is made known first
+from thercon.post.style import DOUBLE_COLUMN, plt  # noqa: E402
 
 DOTS = 155  # an inch: about 1100 points across a page
 COLOURS = 96

@@ -81,7 +81,7 @@ def test_bash_completes_commands_options_and_files(root, tmp_path, words, offere
 
 
 def test_post_is_an_installable_package_of_the_same_version(root, tmp_path):
-    source = shutil.copytree(root / "share/thercon/post", tmp_path / "post")
+    source = shutil.copytree(root / "share/thercon", tmp_path / "source")
     run(sys.executable, "-m", "pip", "install", "--no-index", "--no-build-isolation", "--no-deps",
         "--target", tmp_path / "site", source)
     paths = os.pathsep.join([str(tmp_path / "site"), *filter(None, sys.path)])
@@ -93,7 +93,7 @@ def test_post_is_an_installable_package_of_the_same_version(root, tmp_path):
     assert "color-scheme" in (tmp_path / "two_rods.html").read_text()
     version = \
         run(PROGRAM, "--version").split()[1].rstrip(",")
-    assert (tmp_path / f"site/thercon_post-{version}.dist-info").is_dir()
+    assert (tmp_path / f"site/thercon-{version}.dist-info").is_dir()
 
 
 def test_help_names_the_programs_of_post_and_the_documents():

@@ -8,10 +8,10 @@ import numpy as np
 import pytest
 
 POST = Path(__file__).resolve().parents[2] / "post"
-sys.path.insert(0, str(POST))
+sys.path.insert(0, str(POST.parent / "python"))
 
-from thercon_post import style  # noqa: E402
-from thercon_post.comparison.cli import main  # noqa: E402
+from thercon.post import style  # noqa: E402
+from thercon.post.comparison.cli import main  # noqa: E402
 
 CALCULIX = Path(__file__).resolve().parent / "calculix"
 

@@ -14,8 +14,8 @@ def pytest_configure(config):
 @pytest.fixture(autouse=True)
 def coarse_pictures(monkeypatch):
     """Draw few dots: the tests look at what is written, not at the pictures."""
-    if "thercon_post.fields" in sys.modules:
-        from thercon_post import fields, style
+    if "thercon.post.fields" in sys.modules:
+        from thercon.post import fields, style
 
         monkeypatch.setitem(style.SETTINGS, "savefig.dpi", 50)
         monkeypatch.setitem(style.SETTINGS, "savefig.bbox", None)

@@ -10,15 +10,15 @@ import numpy as np
 import pytest
 
 TESTS = Path(__file__).resolve().parents[1]
-sys.path[:0] = [str(TESTS / "decks"), str(TESTS.parent / "post")]
+sys.path[:0] = [str(TESTS / "decks"), str(TESTS.parent / "python")]
 
 from browser import Browser  # noqa: E402
 from deck_runs import INPUT, solve  # noqa: E402
 
-from thercon_post.branch import parts  # noqa: E402
-from thercon_post.cli import main as plot  # noqa: E402
-from thercon_post.report.cli import main as report  # noqa: E402
-from thercon_post.result import Result  # noqa: E402
+from thercon.post.branch import parts  # noqa: E402
+from thercon.post.cli import main as plot  # noqa: E402
+from thercon.post.report.cli import main as report  # noqa: E402
+from thercon.post.result import Result  # noqa: E402
 
 
 @pytest.fixture(scope="module")

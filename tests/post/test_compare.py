@@ -15,7 +15,7 @@ from comparing import (  # noqa: F401  fixtures
 )
 from synthetic import edge_of_contact, write_result
 
-from thercon_post import style
+from thercon.post import style
 
 
 def pairs_table(path, rows):
@@ -454,7 +454,7 @@ def test_files_that_cannot_be_read_are_named(refused, result, tmp_path):
 
 
 def test_help_says_the_exit_status(capsys):
-    from thercon_post.comparison.cli import main
+    from thercon.post.comparison.cli import main
 
     with pytest.raises(SystemExit) as ended:
         main(["--help"])

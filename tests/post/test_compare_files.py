@@ -26,10 +26,10 @@ from comparing import (  # noqa: F401  fixtures
 )
 from program import CYLINDER, run
 
-from thercon_post.comparison import from_frd, print_file
-from thercon_post.comparison.numbers import fortran_number
-from thercon_post.comparison.report import percent
-from thercon_post.comparison.template import read_template
+from thercon.post.comparison import from_frd, print_file
+from thercon.post.comparison.numbers import fortran_number
+from thercon.post.comparison.report import percent
+from thercon.post.comparison.template import read_template
 
 DOCUMENT = Path(__file__).resolve().parents[2] / "docs" / "compare.md"
 

@@ -16,16 +16,16 @@ import numpy as np
 import pytest
 
 POST = Path(__file__).resolve().parents[2] / "post"
-sys.path.insert(0, str(POST))
+sys.path.insert(0, str(POST.parent / "python"))
 
 from damage import damage  # noqa: E402
 from matplotlib.figure import Figure  # noqa: E402
 from program import CYLINDER, run  # noqa: E402
 from synthetic import write_result  # noqa: E402
 
-from thercon_post import cli, style  # noqa: E402
-from thercon_post.comparison import cli as comparison  # noqa: E402
-from thercon_post.report import cli as report  # noqa: E402
+from thercon.post import cli, style  # noqa: E402
+from thercon.post.comparison import cli as comparison  # noqa: E402
+from thercon.post.report import cli as report  # noqa: E402
 
 FILES = int(os.environ.get("THERCON_FUZZ", "30"))
 FIRST = int(os.environ.get("THERCON_FUZZ_FIRST", "60"))

@@ -7,15 +7,15 @@ from pathlib import Path
 import pytest
 
 TESTS = Path(__file__).resolve().parents[1]
-sys.path[:0] = [str(TESTS / "decks"), str(TESTS.parent / "post")]
+sys.path[:0] = [str(TESTS / "decks"), str(TESTS.parent / "python")]
 
 from deck_runs import INPUT, run  # noqa: E402
 from program import CYLINDER, write_deck  # noqa: E402
 
-from thercon_post.cli import main as plot  # noqa: E402
-from thercon_post.deck_changes import changed  # noqa: E402
-from thercon_post.report.cli import main as report  # noqa: E402
-from thercon_post.result import Result  # noqa: E402
+from thercon.post.cli import main as plot  # noqa: E402
+from thercon.post.deck_changes import changed  # noqa: E402
+from thercon.post.report.cli import main as report  # noqa: E402
+from thercon.post.result import Result  # noqa: E402
 
 
 @pytest.fixture

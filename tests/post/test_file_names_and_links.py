@@ -11,13 +11,13 @@ import numpy as np
 import pytest
 
 POST = Path(__file__).resolve().parents[2] / "post"
-sys.path.insert(0, str(POST))
+sys.path.insert(0, str(POST.parent / "python"))
 
 from synthetic import write_result  # noqa: E402
 
-from thercon_post.cli import main  # noqa: E402
-from thercon_post.errors import UserError  # noqa: E402
-from thercon_post.result import Result  # noqa: E402
+from thercon.post.cli import main  # noqa: E402
+from thercon.post.errors import UserError  # noqa: E402
+from thercon.post.result import Result  # noqa: E402
 
 NAME = b"joint\xff.vtkhdf"
 

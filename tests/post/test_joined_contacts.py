@@ -8,7 +8,7 @@ import numpy as np
 import pytest
 
 TESTS = Path(__file__).resolve().parents[1]
-sys.path[:0] = [str(TESTS / "decks"), str(TESTS.parent / "post")]
+sys.path[:0] = [str(TESTS / "decks"), str(TESTS.parent / "python")]
 
 from blocks import write  # noqa: E402
 from comparing import coarse_pictures  # noqa: E402, F401  fixture
@@ -16,10 +16,10 @@ from deck_runs import solve  # noqa: E402
 from pellets import rod  # noqa: E402
 from synthetic import write_result  # noqa: E402
 
-from thercon_post import profiles, style, zones  # noqa: E402
-from thercon_post.cli import main as plot, parser  # noqa: E402
-from thercon_post.errors import UserError  # noqa: E402
-from thercon_post.result import Result  # noqa: E402
+from thercon.post import profiles, style, zones  # noqa: E402
+from thercon.post.cli import main as plot, parser  # noqa: E402
+from thercon.post.errors import UserError  # noqa: E402
+from thercon.post.result import Result  # noqa: E402
 
 PELLETS = 11   # W10 comes before W2 by name
 

@@ -6,9 +6,9 @@ from pathlib import Path
 import numpy as np
 import pytest
 
-sys.path.insert(0, str(Path(__file__).resolve().parents[2] / "post"))
+sys.path.insert(0, str(Path(__file__).resolve().parents[2] / "python"))
 
-from thercon_post.cells import Cells  # noqa: E402
+from thercon.post.cells import Cells  # noqa: E402
 
 
 def mesh(quadratic):

@@ -13,7 +13,7 @@ import numpy as np
 import pytest
 
 POST = Path(__file__).resolve().parents[2] / "post"
-sys.path.insert(0, str(POST))
+sys.path.insert(0, str(POST.parent / "python"))
 
 from matplotlib.collections import PolyCollection, QuadMesh  # noqa: E402
 from matplotlib.figure import Figure  # noqa: E402
@@ -26,15 +26,15 @@ from synthetic import (  # noqa: E402
     write_result,
 )
 
-from thercon_post import element_fields, field_colours, fields, mesh  # noqa: E402
-from thercon_post import profiles, style, tables, trade, zones  # noqa: E402
-from thercon_post.cells import Cells  # noqa: E402
-from thercon_post.cli import main, parser, spread  # noqa: E402
-from thercon_post.errors import UserError  # noqa: E402
-from thercon_post.fine_mesh import refine  # noqa: E402
-from thercon_post.overlay import read_overlays  # noqa: E402
-from thercon_post.result import Result  # noqa: E402
-from thercon_post.units import Units  # noqa: E402
+from thercon.post import element_fields, field_colours, fields, mesh  # noqa: E402
+from thercon.post import profiles, style, tables, trade, zones  # noqa: E402
+from thercon.post.cells import Cells  # noqa: E402
+from thercon.post.cli import main, parser, spread  # noqa: E402
+from thercon.post.errors import UserError  # noqa: E402
+from thercon.post.fine_mesh import refine  # noqa: E402
+from thercon.post.overlay import read_overlays  # noqa: E402
+from thercon.post.result import Result  # noqa: E402
+from thercon.post.units import Units  # noqa: E402
 
 
 @pytest.fixture
@@ -1302,7 +1302,9 @@ def test_faces_are_the_boundary_edges_along_the_contact(result):
 
 
 def test_launcher_takes_the_python_of_the_build_and_names_missing_packages(tmp_path):
-    post = shutil.copytree(POST, tmp_path / "post", ignore=shutil.ignore_patterns("__pycache__"))
+    for folder in (POST, POST.parent / "python"):
+        shutil.copytree(folder, tmp_path / folder.name, ignore=shutil.ignore_patterns("__pycache__"))
+    post = tmp_path / "post"
     bare = [sys.executable, "-S", "-E", str(post / "plot"), "--help"]
     told = subprocess.run(bare, capture_output=True, text=True, check=False)
     assert told.returncode == 2

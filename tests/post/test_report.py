@@ -12,18 +12,18 @@ import pytest
 from PIL import Image
 
 POST = Path(__file__).resolve().parents[2] / "post"
-sys.path.insert(0, str(POST))
+sys.path.insert(0, str(POST.parent / "python"))
 
 from program import CYLINDER, run, write_deck  # noqa: E402
 from synthetic import write_result  # noqa: E402
 
-from thercon_post import stresses  # noqa: E402
-from thercon_post.cli import main as plot  # noqa: E402
-from thercon_post.report.cli import main  # noqa: E402
-from thercon_post.report.data import kept_steps  # noqa: E402
-from thercon_post.report.listing import read_listing  # noqa: E402
-from thercon_post.report.tables import remark, target_cells  # noqa: E402
-from thercon_post.result import Result  # noqa: E402
+from thercon.post import stresses  # noqa: E402
+from thercon.post.cli import main as plot  # noqa: E402
+from thercon.post.report.cli import main  # noqa: E402
+from thercon.post.report.data import kept_steps  # noqa: E402
+from thercon.post.report.listing import read_listing  # noqa: E402
+from thercon.post.report.tables import remark, target_cells  # noqa: E402
+from thercon.post.result import Result  # noqa: E402
 
 
 @pytest.fixture(scope="module")

@@ -12,14 +12,14 @@ import numpy as np
 import pytest
 
 POST = Path(__file__).resolve().parents[2] / "post"
-sys.path.insert(0, str(POST))
+sys.path.insert(0, str(POST.parent / "python"))
 
 from synthetic import write_result  # noqa: E402
 
-from thercon_post.report.cli import main  # noqa: E402
-from thercon_post.report.html import html, joined  # noqa: E402
+from thercon.post.report.cli import main  # noqa: E402
+from thercon.post.report.html import html, joined  # noqa: E402
 
-REPORT = POST / "thercon_post" / "report"
+REPORT = POST.parent / "python" / "thercon" / "post" / "report"
 RUN = "document.documentElement.dataset.ran='yes'"
 
 

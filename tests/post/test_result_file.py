@@ -14,9 +14,9 @@ from vtkmodules.vtkCommonExecutionModel import vtkStreamingDemandDrivenPipeline 
 from vtkmodules.vtkIOHDF import vtkHDFReader
 
 ROOT = Path(__file__).resolve().parents[2]
-sys.path.insert(0, str(ROOT / "post"))
+sys.path.insert(0, str(ROOT / "python"))
 
-from thercon_post.result import Result  # noqa: E402
+from thercon.post.result import Result  # noqa: E402
 
 INCREMENTS, NODES, ELEMENTS, PAIRS = 45, 326, 92, 21
 ENDS, AXIS = 5 + 5, 13 + 13   # nodes of the heated and the cold section, of the axis of symmetry

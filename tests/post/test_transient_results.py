@@ -9,15 +9,15 @@ import numpy as np
 import pytest
 
 TESTS = Path(__file__).resolve().parents[1]
-sys.path[:0] = [str(TESTS / "decks"), str(TESTS.parent / "post")]
+sys.path[:0] = [str(TESTS / "decks"), str(TESTS.parent / "python")]
 
 import calculix  # noqa: E402
 import transients as two  # noqa: E402
 from comparing import coarse_pictures, compare, line_of  # noqa: E402, F401  fixtures
 from deck_runs import solve  # noqa: E402
 
-from thercon_post.cli import main as plot  # noqa: E402
-from thercon_post.report.cli import main as report  # noqa: E402
+from thercon.post.cli import main as plot  # noqa: E402
+from thercon.post.report.cli import main as report  # noqa: E402
 
 UNITS = '*OPTIONS, UNITS="m Pa W C"'
 

@@ -10,8 +10,8 @@ from pictures import save
 from report import Picture, Table, check_rows, verdict
 from scipy.optimize import brentq, minimize_scalar
 from test_branches import branch_of_r3, exchanged_twin, factor_of, followed
-from thercon_post import branch, style
-from thercon_post.result import Result
+from thercon.post import branch, style
+from thercon.post.result import Result
 
 TITLE = "Branches"
 TEXT = """

@@ -16,7 +16,7 @@ from report import Picture, Table, check_rows, verdict
 from scipy.optimize import brentq
 from test_stability import BRANCHES, MIDDLE, middle, rod_deck, stability_of
 from test_stored_heat import CONSTANT, STORED, TOP, heated
-from thercon_post import style
+from thercon.post import style
 
 import rod_modes
 import rods

@@ -1,4 +1,4 @@
-"""How the programs of this folder start: in build/venv, or saying what is missing."""
+"""How the programs of `post/` start: in build/venv, or saying what is missing."""
 
 import os
 import signal
@@ -8,8 +8,8 @@ from pathlib import Path
 
 from .errors import FAILED
 
-ROOT = Path(__file__).resolve().parents[1]
-PYTHON = ROOT.parent / "build" / "venv" / "bin" / "python"
+ROOT = Path(__file__).resolve().parents[3]
+PYTHON = ROOT / "build" / "venv" / "bin" / "python"
 
 
 def run(script, module):
@@ -22,15 +22,15 @@ def run(script, module):
     if PYTHON.exists():
         if Path(sys.executable) != PYTHON:
             os.execv(PYTHON, [str(PYTHON), str(script), *sys.argv[1:]])
-        sys.pycache_prefix = str(ROOT.parent / "build" / "python")
+        sys.pycache_prefix = str(ROOT / "build" / "python")
         sys.dont_write_bytecode = False
     signal.signal(signal.SIGPIPE, signal.SIG_DFL)  # end quietly where `| head` has read enough
     try:
-        main = import_module(f"thercon_post.{module}").main
+        main = import_module(f"thercon.post.{module}").main
     except ModuleNotFoundError as missing:
         print(
             f"{script.name}: error: the Python package '{missing.name}' is missing; install the "
-            f"packages of {ROOT / 'requirements.txt'}, on Debian by apt-get install python3-h5py "
+            f"packages of {ROOT / 'post' / 'requirements.txt'}, on Debian by apt-get install python3-h5py "
             "python3-matplotlib, in the source tree by ./setup.sh build",
             file=sys.stderr,
         )

@@ -1,0 +1,1 @@
+"""Decks, runs and results of thercon from Python."""
