@@ -1,4 +1,5 @@
-!> The table of a batch: on the terminal, and as a CSV file.
+!> The table of a batch: on the terminal, and as a CSV file, which for the rows of a table of values
+!> has these and the results, too.
 module batch_table
    use, intrinsic :: iso_fortran_env, only: output_unit
    use deck_outcomes, only: deck_outcome_type
@@ -6,38 +7,41 @@ module batch_table
    use file_calls, only: create_working_file, remove_file, rename_file
    use kinds, only: dp
    use messages, only: print_line
+   use name_index, only: name_index_type
    use open_files, only: write_file
    use processes, only: reason_of, report_type
-   use text, only: counted, quoted, to_text, with_decimals
+   use text, only: append, counted, quoted, string_type, to_text, to_upper, &
+      with_decimals
    use utf8, only: character_count, printable
    implicit none
    private
-   public :: print_batch, write_batch, table_name
+   public :: print_batch, write_batch, is_batch_column, table_name
 
    !> Name of the CSV file. Those of a deck's results end otherwise, and a table of values that
    !> is in the folder is likely to be called batch.csv.
    character(*), parameter :: table_name = 'thercon-batch.csv'
-   character(*), parameter :: columns = 'deck,status,outcome,reason,increments,iterations,'// &
+   character(*), parameter :: columns = ',status,outcome,reason,increments,iterations,'// &
       'checks_passed,checks_failed,seconds,cpu_seconds,peak_megabytes'
    real(dp), parameter :: megabyte = 1.0e6_dp   !! [byte]
 
 contains
 
    !> Prints the table, and how many decks ended in which way.
-   subroutine print_batch(outcomes, seconds)
-      type(deck_outcome_type), intent(in) :: outcomes(:)  !! one a deck, in their order
+   subroutine print_batch(outcomes, noun, seconds)
+      type(deck_outcome_type), intent(in) :: outcomes(:)  !! one a run, in their order
+      character(*), intent(in) :: noun                     !! what each is of: deck or row
       real(dp), intent(in) :: seconds                      !! time that the batch took [s]
       character(120) :: line
       integer :: width, i
 
-      width = len('deck')
+      width = len(noun)
       do i = 1, size(outcomes)
          width = max(width, character_count(printable(outcomes(i)%path)))
       end do
       write (line, '(2x, a20, 2a12, 2a8, 2a10, a9)') 'outcome', 'increments', 'iterations', &
          'passed', 'failed', 'seconds', 'CPU s', 'peak MB'
       call print_line(output_unit, '')
-      call print_line(output_unit, 'deck'//repeat(' ', width - 4)//trim(line))
+      call print_line(output_unit, noun//repeat(' ', width - len(noun))//trim(line))
       do i = 1, size(outcomes)
          associate (deck => outcomes(i), report => outcomes(i)%report)
             write (line, '(2x, a20)') deck%words()
@@ -49,7 +53,7 @@ contains
                character_count(printable(deck%path)))//trim(line))
          end associate
       end do
-      call print_line(output_unit, counted(size(outcomes), 'deck')//' in '// &
+      call print_line(output_unit, counted(size(outcomes), noun)//' in '// &
          with_decimals(seconds, 3)//' s: '//counts_of(outcomes))
    end subroutine print_batch
 
@@ -75,28 +79,103 @@ contains
       end do
    end function counts_of
 
-   !> Writes the CSV file; one that is there is replaced in one instant. Fields of a deck that was
-   !> not run are empty; those of one that runs say how far it is. Of a result that was finished
-   !> before, CPU time and memory are not known.
+   !> Whether a column of the CSV file has a name.
+   pure logical function is_batch_column(name)
+      character(*), intent(in) :: name                     !! in any case
+
+      is_batch_column = index(to_upper(',run'//columns//','), to_upper(','//name//',')) > 0
+   end function is_batch_column
+
+   !> Writes the CSV file; one that is there is replaced in one instant. Fields of a run that was
+   !> not begun are empty; those of one that runs say how far it is. Of a result that was finished
+   !> before, CPU time and memory are not known. Rows of a table begin with their values and end with
+   !> their results.
    !> Error: status_internal, when the file cannot be written.
-   subroutine write_batch(folder, outcomes, error)
-      character(*), intent(in) :: folder                   !! folder of the results
-      type(deck_outcome_type), intent(in) :: outcomes(:)  !! one a deck, in their order
+   subroutine write_batch(path, outcomes, error, names, values)
+      character(*), intent(in) :: path
+      type(deck_outcome_type), intent(in) :: outcomes(:)  !! one a run, in their order
       type(error_type), allocatable, intent(out) :: error
-      character(:), allocatable :: path, working_path, text
+      type(string_type), intent(in), optional :: names(:)      !! columns of a table of values
+      type(string_type), intent(in), optional :: values(:, :)  !! (columns, runs)
+      character(:), allocatable :: working_path, text
+      type(string_type), allocatable :: results(:)
       integer :: i
 
-      path = folder//'/'//table_name
       call create_working_file(path, working_path, error)
       if (allocated(error)) return
-      text = columns//new_line('a')
+      results = result_columns(outcomes)
+      text = 'deck'//columns//new_line('a')
+      if (present(names)) text = joined(names, adds_quotes=.true.)//',run'// &
+         columns//after_comma(results, adds_quotes=.true.)//new_line('a')
       do i = 1, size(outcomes)
-         text = text//row_of(outcomes(i), outcomes(i)%report)//new_line('a')
+         if (present(values)) text = text//joined(values(:, i), adds_quotes=.false.)//','
+         text = text//row_of(outcomes(i), outcomes(i)%report)//after_comma(results_of(outcomes(i), &
+            results), adds_quotes=.false.)//new_line('a')
       end do
       call write_file(working_path, text, error)
       if (.not. allocated(error)) call rename_file(working_path, path, error)
       if (allocated(error)) call remove_file(working_path)
    end subroutine write_batch
+
+   !> The quantities of all rows, in the order in which they come first.
+   function result_columns(outcomes) result(names)
+      type(deck_outcome_type), intent(in) :: outcomes(:)
+      type(string_type), allocatable :: names(:)
+      type(name_index_type) :: known
+      integer :: i, k
+
+      allocate (names(0))
+      do i = 1, size(outcomes)
+         associate (row => outcomes(i)%row)
+            if (.not. allocated(row%names)) cycle
+            do k = 1, size(row%names)
+               if (known%find(row%names(k)%value) > 0) cycle
+               call known%add(row%names(k)%value)
+               call append(names, row%names(k)%value)
+            end do
+         end associate
+      end do
+   end function result_columns
+
+   !> The values of a run for these quantities, nothing for those that it does not have.
+   function results_of(outcome, names) result(values)
+      type(deck_outcome_type), intent(in) :: outcome
+      type(string_type), intent(in) :: names(:)
+      type(string_type) :: values(size(names))
+      integer :: i
+
+      do i = 1, size(names)
+         values(i)%value = outcome%row%value_of(names(i)%value)
+      end do
+   end function results_of
+
+   !> Fields with commas between them.
+   function joined(fields, adds_quotes) result(line)
+      type(string_type), intent(in) :: fields(:)
+      logical, intent(in) :: adds_quotes                   ! around texts
+      character(:), allocatable :: line
+      integer :: i
+
+      line = ''
+      do i = 1, size(fields)
+         if (i > 1) line = line//','
+         if (adds_quotes) then
+            line = line//quoted(fields(i)%value)
+         else
+            line = line//fields(i)%value
+         end if
+      end do
+   end function joined
+
+   !> Fields with a comma before each.
+   function after_comma(fields, adds_quotes) result(line)
+      type(string_type), intent(in) :: fields(:)
+      logical, intent(in) :: adds_quotes                   ! around texts
+      character(:), allocatable :: line
+
+      line = ''
+      if (size(fields) > 0) line = ','//joined(fields, adds_quotes)
+   end function after_comma
 
    function row_of(deck, report) result(line)
       type(deck_outcome_type), intent(in) :: deck

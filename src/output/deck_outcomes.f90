@@ -10,6 +10,7 @@ module deck_outcomes
    use messages, only: message_type, print_line
    use processes, only: file_report, reason_of, report_type, set_reason
    use records, only: increment_record_type
+   use result_rows, only: result_row_type
    use text, only: append, counted, string_type, to_text, with_decimals
    implicit none
    private
@@ -38,9 +39,10 @@ module deck_outcomes
       ! Of a deck that is solved in this process.
       type(string_type), allocatable :: summary(:)         !! what it comes to, lines
       type(string_type), allocatable :: failed_checks(:)   !! one line each
-      ! For --json.
+      ! For --json and --table.
       type(message_type), allocatable :: messages(:)
       type(json_type) :: results                           !! at the last increment
+      type(result_row_type) :: row                         !! the same for a table of runs
    contains
       procedure :: note
       procedure :: note_files

@@ -1,5 +1,6 @@
-!> A run as one document in JSON, which `--json` prints: its results at the last increment, with
-!> their uncertainties, and its checks. docs/results.md describes it.
+!> A run as one document in JSON, which `--json` prints, and as a row of a table of runs: its results
+!> at the last increment, with their uncertainties, and its checks. docs/results.md describes the
+!> document, docs/batch.md the row.
 module run_documents
    use contact_points, only: contact_points_type
    use contact_quantities, only: contact_table, contact_values, estimated, has_quantity
@@ -12,8 +13,9 @@ module run_documents
    use no_estimates, only: no_reason, reason_inside_step, words_of_reason
    use quantity_types, only: of_interface, quantity_type
    use records, only: uncertainty_type
+   use result_rows, only: result_row_type
    use summary, only: summary_type
-   use text, only: or_blank
+   use text, only: or_blank, to_text
    use unit_labels, only: unit_in_words
    use verification, only: verifier_type
    implicit none
@@ -23,8 +25,9 @@ module run_documents
 contains
 
    !> Adds the results of the last increment; before the first one its number 0 alone.
-   subroutine put_summary(document, summary, model, interfaces)
+   subroutine put_summary(document, row, summary, model, interfaces)
       type(json_type), intent(inout) :: document
+      type(result_row_type), intent(inout) :: row
       type(summary_type), intent(in) :: summary
       type(model_type), intent(in) :: model
       type(contact_points_type), intent(in) :: interfaces(:)   !! contact points of every interface
@@ -40,17 +43,18 @@ contains
          if (summary%stability /= '') call document%put(summary%stability, 'stability')
          call document%open('{', 'interfaces')
          do i = 1, size(interfaces)
-            call put_interface(document, summary, model, interfaces(i), i)
+            call put_interface(document, row, summary, model, interfaces(i), i)
          end do
          call document%close('}')
-         call put_fields(document, summary, model)
-         call put_bodies(document, summary, model)
+         call put_fields(document, row, summary, model)
+         call put_bodies(document, row, summary, model)
       end if
       call document%close('}')
    end subroutine put_summary
 
-   subroutine put_interface(document, summary, model, points, i)
+   subroutine put_interface(document, row, summary, model, points, i)
       type(json_type), intent(inout) :: document
+      type(result_row_type), intent(inout) :: row
       type(summary_type), intent(in) :: summary
       type(model_type), intent(in) :: model
       type(contact_points_type), intent(in) :: points
@@ -69,13 +73,14 @@ contains
             if (.not. has_quantity(contact, quantity%needs)) cycle
             value = contact_values(quantity%name, contact)
             call open_quantity(document, quantity, value(1), model)
+            call row%put(trim(quantity%name)//' '//points%name, value(1))
             do q = size(estimated), 1, -1
                if (estimated(q)%name == quantity%name) exit
             end do
             if (is_end_of_face(quantity, points, value(1))) then
                call document%put('end of the face', 'no_estimate')
             else if (q > 0 .and. allocated(summary%errors)) then
-               call put_uncertainty(document, summary%errors(i), q)
+               call put_uncertainty(document, row, summary%errors(i), q)
             else if (q > 0) then
                call document%put(words_of_reason(reason_inside_step(model)), 'no_estimate')
             end if
@@ -86,8 +91,9 @@ contains
    end subroutine put_interface
 
    !> Ranges of the fields.
-   subroutine put_fields(document, summary, model)
+   subroutine put_fields(document, row, summary, model)
       type(json_type), intent(inout) :: document
+      type(result_row_type), intent(inout) :: row
       type(summary_type), intent(in) :: summary
       type(model_type), intent(in) :: model
       character(*), parameter :: names(4) = [character(19) :: 'lowest_temperature', &
@@ -114,12 +120,14 @@ contains
          call document%put(value, 'value')
          call document%put(unit_in_words(unit, model%units), 'unit')
          call document%close('}')
+         call row%put(name, value)
       end subroutine put_plain
    end subroutine put_fields
 
    !> Maxima of the bodies; none where nothing is estimated.
-   subroutine put_bodies(document, summary, model)
+   subroutine put_bodies(document, row, summary, model)
       type(json_type), intent(inout) :: document
+      type(result_row_type), intent(inout) :: row
       type(summary_type), intent(in) :: summary
       type(model_type), intent(in) :: model
       type(quantity_type) :: quantity
@@ -134,8 +142,9 @@ contains
                   if (errors%node(q) == 0) cycle
                   quantity = maxima(q)
                   call open_quantity(document, quantity, errors%value(q), model)
+                  call row%put(trim(quantity%name)//' body '//to_text(b), errors%value(q))
                   call document%put(number(errors%node(q)), 'node')
-                  call put_uncertainty(document, errors, q)
+                  call put_uncertainty(document, row, errors, q)
                   call document%close('}')
                end do
                call document%open('[', 'singular_corners')
@@ -163,23 +172,27 @@ contains
    end subroutine open_quantity
 
    !> The uncertainty of a quantity, or why there is none.
-   subroutine put_uncertainty(document, errors, q)
+   subroutine put_uncertainty(document, row, errors, q)
       type(json_type), intent(inout) :: document
+      type(result_row_type), intent(inout) :: row    ! whose last quantity it is of
       class(uncertainty_type), intent(in) :: errors
       integer, intent(in) :: q                       ! the quantity
 
       if (errors%no_estimate(q) == no_reason) then
          call document%put(errors%total(q), 'uncertainty')
+         call row%put_uncertainty(errors%total(q))
       else
          call document%put(words_of_reason(errors%no_estimate(q)), 'no_estimate')
       end if
    end subroutine put_uncertainty
 
    !> Adds the *VERIFY checks in the order of the deck.
-   subroutine put_checks(document, model, verifier)
+   subroutine put_checks(document, row, model, verifier)
       type(json_type), intent(inout) :: document
+      type(result_row_type), intent(inout) :: row
       type(model_type), intent(in) :: model
       type(verifier_type), intent(in) :: verifier
+      character(:), allocatable :: name
       integer :: i
 
       call document%open('[', 'checks')
@@ -205,6 +218,11 @@ contains
             if (allocated(outcome%uncertainty)) call document%put(outcome%uncertainty, &
                'uncertainty')
             call document%close('}')
+            name = trim(check%quantity//' '//check%where)
+            if (.not. check%at_last) name = name//' at '//to_text(check%when)
+            if (outcome%reason /= '' .or. row%has(name)) cycle
+            call row%put(name, outcome%found)
+            if (allocated(outcome%uncertainty)) call row%put_uncertainty(outcome%uncertainty)
          end associate
       end do
       call document%close(']')

@@ -16,6 +16,7 @@ module run_output
    use model, only: model_type
    use progress, only: progress_type
    use records, only: increment_record_type
+   use result_rows, only: result_row_type
    use results, only: results_type
    use run_judgement, only: run_judgement_type
    use run_documents, only: put_checks, put_summary
@@ -54,7 +55,7 @@ module run_output
       procedure :: written
       procedure :: failed_checks
       procedure :: summary_lines
-      procedure :: members => members_of
+      procedure :: report
    end type run_output_type
 
 contains
@@ -228,17 +229,19 @@ contains
       end associate
    end function summary_lines
 
-   !> The run at its last accepted increment as members of a document in JSON.
-   function members_of(self, model, interfaces) result(members)
+   !> The run at its last accepted increment as members of a document in JSON, and as a row of a
+   !> table of runs.
+   subroutine report(self, model, interfaces, members, row)
       class(run_output_type), intent(in) :: self
       type(model_type), intent(in) :: model
       type(contact_points_type), intent(in) :: interfaces(:) !! contact points of every interface
-      type(json_type) :: members
+      type(json_type), intent(out) :: members
+      type(result_row_type), intent(out) :: row
       integer :: i
 
       call put_run(members, self%run, model)
-      call put_summary(members, self%listing%summary, model, interfaces)
-      call put_checks(members, model, self%verifier)
+      call put_summary(members, row, self%listing%summary, model, interfaces)
+      call put_checks(members, row, model, self%verifier)
       associate (accuracy => self%run%accuracy)
          if (.not. allocated(accuracy%targets)) return
          if (size(accuracy%targets) == 0) return
@@ -251,7 +254,7 @@ contains
          call members%close(']')
          call members%close('}')
       end associate
-   end function members_of
+   end subroutine report
 
    !> One line for each *VERIFY card that failed, and one for all that could not be judged.
    function failed_checks(self, model) result(lines)

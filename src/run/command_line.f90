@@ -22,7 +22,7 @@ module command_line
    ! For messages on misspelt words.
    character(*), parameter :: known_commands = 'run/check/trade/help'
    character(*), parameter :: known_options = '--out/--jobs/--width/--set/--limit/--accuracy/'// &
-      '--errors/--restart/--resume/--quiet/--json/--help/--version/'// &
+      '--errors/--restart/--resume/--table/--quiet/--json/--help/--version/'// &
       '--keywords'
 
    character(4), parameter :: errors_words(0:2) = ['no  ', 'last', 'full']   !! of --errors
@@ -46,13 +46,16 @@ module command_line
       character(:), allocatable :: restart            !! --restart, path of a result; empty: none
       real(dp), allocatable :: restart_time           !! its time, where one is given [time]
       logical :: resumes = .false.                    !! --resume
+      character(:), allocatable :: table              !! --table, path of the values; empty: none
+      integer :: row = 0                              !! the row of it that is run; 0: none
    end type command_type
 
    !> Lines of --help
-   character(*), parameter :: usage(45) = [character(88) :: &
+   character(*), parameter :: usage(48) = [character(88) :: &
       'usage: thercon run DECK... [--out DIR] [--jobs N] [--width N] [--set NAME=VALUE]', &
       '                           [--quiet] [--json] [--accuracy P%] [--limit SECONDS]', &
       '                           [--errors last|full|no] [--restart RESULT[@TIME]] [--resume]', &
+      '                           [--table VALUES.csv]', &
       '       thercon check DECK... [--width N] [--set NAME=VALUE] [--quiet] [--json]', &
       '       thercon trade DECK [--out DIR] [--width N] [--set NAME=VALUE] [--quiet]', &
       '                          [--limit SECONDS] [--jobs N]', &
@@ -81,6 +84,8 @@ module command_line
       '                     or with RESULT@TIME from that at a time', &
       '  --resume           run: skip decks whose results are finished; go on with others from', &
       '                     the last state that their results keep, or from the start', &
+      '  --table VALUES.csv run: solve one deck with each row of values, whose columns are', &
+      '                     parameters; results of all rows are in DIR/b.table.csv', &
       '  --limit SECONDS    run: end the rounds of --accuracy in this time with the last whole', &
       '                     one, after the first in any case;', &
       '                     trade: skip rows that would take more CPU time (30)', &
@@ -110,6 +115,7 @@ contains
       command%folder = '.'
       command%restart = ''
       command%accuracy = ''
+      command%table = ''
       if (command_argument_count() == 0) return
       word = argument(1)
       select case (word)
@@ -144,7 +150,12 @@ contains
          call set_error(error, status_deck, '--restart takes one deck; --resume takes several, '// &
             'each with its own result')
       else if (command%json .and. (size(command%decks) > 1 .or. command%is_batch)) then
-         call set_error(error, status_deck, '--json takes one deck, without --jobs')
+         call set_error(error, status_deck, '--json takes one deck, without --jobs and --table')
+      else if (command%table /= '' .and. size(command%decks) > 1) then
+         call set_error(error, status_deck, '--table takes one deck')
+      else if (command%table /= '' .and. command%restart /= '') then
+         call set_error(error, status_deck, '--restart does not go with --table; --resume goes '// &
+            'on with each row')
       else if (command%resumes .and. command%restart /= '') then
          call set_error(error, status_deck, '--resume goes on from the deck''s own result, and '// &
             '--restart from another: leave one out')
@@ -194,7 +205,8 @@ contains
       case ('--help', '-h')
          command%action = command_help
          return
-      case ('--out', '--width', '--set', '--jobs', '--limit', '--accuracy', '--errors', '--restart')
+      case ('--out', '--width', '--set', '--jobs', '--limit', '--accuracy', '--errors', &
+         '--restart', '--table')
          value = ''
          if (i <= command_argument_count()) value = argument(i)
          if (len_trim(value) == 0) then
@@ -217,7 +229,7 @@ contains
       if (command%action == command_check .and. word == '--out' .or. &
          command%action == command_check .and. word == '--jobs' .or. &
          command%action /= command_run .and. any(word == [character(10) :: '--accuracy', &
-         '--errors']) .or. &
+         '--errors', '--table']) .or. &
          command%action == command_trade .and. word == '--restart' .or. &
          command%action == command_check .and. word == '--limit') then
          call set_error(error, status_deck, 'option '//word//' does not go with '//argument(1))
@@ -276,6 +288,9 @@ contains
          end if
       case ('--set')
          call append(command%settings, value)
+      case ('--table')
+         command%is_batch = .true.
+         command%table = value
       case ('--restart')
          call take_restart(command, value, error)
       case default

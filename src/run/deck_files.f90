@@ -5,10 +5,10 @@ module deck_files
    use command_line, only: command_type
    use errors, only: error_type, set_error, status_deck
    use file_calls, only: identity_of
-   use text, only: append, string_type
+   use text, only: append, string_type, to_text
    implicit none
    private
-   public :: input_files_type, base_name, results_of, outputs_of
+   public :: input_files_type, base_name, results_of, row_of, outputs_of, batch_table_of
 
    !> The files of one deck or more.
    type :: input_files_type
@@ -26,10 +26,30 @@ contains
    pure function results_of(path, command) result(results)
       character(*), intent(in) :: path           !! the deck as given
       type(command_type), intent(in) :: command
-      character(:), allocatable :: results       !! such as DIR/b for a/b.inp
+      character(:), allocatable :: results       !! such as DIR/b for a/b.inp, DIR/b-2 for row 2
 
       results = command%folder//'/'//base_name(path)
+      if (command%row > 0) results = results//'-'//to_text(command%row)
    end function results_of
+
+   !> Path of the results of a run that is a row of a table.
+   pure function row_of(path, command) result(row)
+      character(*), intent(in) :: path           !! the deck as given
+      type(command_type), intent(in) :: command
+      character(:), allocatable :: row           !! such as DIR/b-2.csv
+
+      row = results_of(path, command)//'.csv'
+   end function row_of
+
+   !> Path of the table that a batch writes.
+   pure function batch_table_of(command) result(table)
+      type(command_type), intent(in) :: command
+      character(:), allocatable :: table         !! with --table such as DIR/b.table.csv
+
+      table = command%folder//'/'//table_name
+      if (command%table /= '') table = command%folder//'/'//base_name(command%decks(1)%value)// &
+         '.table.csv'
+   end function batch_table_of
 
    !> Paths of all files that a deck writes, and of the table that a batch writes beside them: no
    !> deck may be lost to a batch of others either.
@@ -45,7 +65,8 @@ contains
       do i = 1, size(extensions)
          outputs(i)%value = results_of(path, command)//trim(extensions(i))
       end do
-      call append(outputs, command%folder//'/'//table_name)
+      call append(outputs, batch_table_of(command))
+      if (command%row > 0) call append(outputs, row_of(path, command))
    end function outputs_of
 
    !> Name of a deck's results: its file name without folder and extension, or stdin where it is

@@ -5,7 +5,7 @@ module deck_origins
    use card_parameters, only: take_parameter
    use cards, only: cards_type
    use command_line, only: command_type, settings_in_words
-   use deck_files, only: results_of
+   use deck_files, only: results_of, row_of
    use deck_reader, only: read_deck
    use deck_report, only: deck_report_type
    use deck_source, only: earlier_deck_type, place_type
@@ -39,8 +39,9 @@ contains
       character(:), allocatable :: source
       type(place_type) :: place
       integer :: errors, restart
-      logical :: is_there, reads
+      logical :: has_row, is_there, reads
 
+      has_row = .true.
       reads = reads_restart(cards)
       if (reads) place = cards%keywords(first_card(cards))%place
       errors = report%error_count()
@@ -50,6 +51,7 @@ contains
          source = results_of(path, command)//'.vtkhdf'
          inquire (file=source, exist=is_there)
          if (.not. is_there) source = ''
+         if (command%row > 0) inquire (file=row_of(path, command), exist=has_row)
       end if
       if (reads .and. source == '') call report%error(place, &
          '*RESTART, READ goes on from a result: name it by --restart RESULT')
@@ -62,6 +64,8 @@ contains
       if (allocated(error)) then
          if (error%card > 0) place = place_type(error%card)
       else if (restart == 0) then
+         ! A row of a table is finished with its own file alone; else it is solved once more.
+         if (.not. has_row) return
          finished = result
       end if
       if (.not. (allocated(error) .or. allocated(finished))) then

@@ -300,7 +300,8 @@ contains
             outcome%keeps_round = .false.
             outcome%report%increments = output%results%accepted
             outcome%summary = output%summary_lines(model, interfaces)
-            if (self%command%json) outcome%results = output%members(model, interfaces)
+            if (self%command%json .or. self%command%row > 0) call output%report(model, &
+               interfaces, outcome%results, outcome%row)
             ! There are none before the summary of a run is made.
             if (allocated(output%run%warnings) .and. output%run%accuracy%later_round == 0) then
                do i = 1, size(output%run%warnings)

@@ -30,6 +30,7 @@ module deck_parameters
       procedure :: define
       procedure :: substitute
       procedure :: check_settings
+      procedure :: known => known_names
    end type deck_parameters_type
 
 contains
@@ -198,6 +199,14 @@ contains
          end associate
       end do
    end subroutine check_settings
+
+   !> The names that are defined.
+   pure function known_names(self) result(names)
+      class(deck_parameters_type), intent(in) :: self
+      type(string_type), allocatable :: names(:)           !! in upper case
+
+      names = self%names%known()
+   end function known_names
 
    !> A text of the command line without the blanks around it, as fields of a deck are.
    pure function without_blanks_around(string) result(bare)

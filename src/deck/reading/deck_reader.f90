@@ -14,7 +14,7 @@ module deck_reader
    use utf8, only: first_byte
    implicit none
    private
-   public :: read_deck, files_of_deck, keyword_of, keyword_lines
+   public :: read_deck, files_of_deck, parameters_of_deck, keyword_of, keyword_lines
 
    integer, parameter :: deepest_include = 16   !! files that may include each other
    integer, parameter :: most_files = 1000      !! of a deck, each counted as often as it is read
@@ -80,6 +80,20 @@ contains
       call read_all_lines(path, settings, open_lines, cards, report, fault)
       call move_alloc(cards%files, files)
    end function files_of_deck
+
+   !> The names that the *PARAMETER cards of a deck define. What else is wrong with it is not told.
+   subroutine parameters_of_deck(path, settings, names, fault)
+      character(*), intent(in) :: path                  !! the deck as given, no pipe
+      type(string_type), intent(in) :: settings(:)      !! --set, each NAME=VALUE
+      type(string_type), allocatable, intent(out) :: names(:)   !! in upper case
+      character(:), allocatable, intent(out) :: fault   !! why the deck is not read; else empty
+      type(card_lines_type) :: open_lines
+      type(cards_type) :: cards
+      type(deck_report_type) :: report
+
+      call read_all_lines(path, settings, open_lines, cards, report, fault)
+      names = open_lines%parameters%known()
+   end subroutine parameters_of_deck
 
    !> Reads all lines of a deck into cards as they are written.
    subroutine read_all_lines(path, settings, open_lines, cards, report, fault)
