@@ -8,6 +8,11 @@ set_target_properties(thercon PROPERTIES
    INSTALL_RPATH_USE_LINK_PATH TRUE
    BUILD_WITH_INSTALL_RPATH TRUE)
 set(installed_folder "${CMAKE_INSTALL_DATADIR}/thercon")
+# Of a wheel of Python the program is one of the scripts; the package is copied by scikit-build-core.
+if(SKBUILD)
+   install(TARGETS thercon RUNTIME DESTINATION "${SKBUILD_SCRIPTS_DIR}" COMPONENT program)
+   return()
+endif()
 install(TARGETS thercon RUNTIME)
 install(DIRECTORY docs input post python DESTINATION "${installed_folder}" USE_SOURCE_PERMISSIONS
    PATTERN "__pycache__" EXCLUDE)
