@@ -109,6 +109,11 @@ class Contact:
         return {key: found[key] for key in sorted(found, key=lambda key: not key.endswith("_force"))
                 if key == "peak_pressure" or self.is_total(key)}
 
+    def is_end_of_face(self, key, value):
+        """Whether a value is an edge at the end of the face, which no mesh moves."""
+        ends = [self.data["s"][piece][-1] for piece in self.pieces]
+        return key.startswith("edge_") and value in ends
+
     def is_total(self, key):
         """Whether a dataset has one value an increment: its length alone does not tell, as there may
         be as many contact points as increments."""
@@ -260,7 +265,7 @@ class Result:
     def history(self):
         """Datasets of /history by name: one value for each accepted increment."""
         group = self.file["history"]
-        found = {key: numbers(group, key) for key in group}
+        found = {key: numbers(group, key) for key, item in group.items() if not isinstance(item, h5py.Group)}
         for key in ("time", "load"):
             found[key] = numbers(group, key, like=(None,), finite=True)
         for key, values in found.items():
@@ -544,8 +549,9 @@ class Result:
         """Return a cell data array of /VTKHDF at a time step; None where it is absent."""
         return self.data_at("Cell", name, step, self.cells.count)
 
-    def data_at(self, kind, name, step, count):
-        """Return `count` rows of point or cell data at a time step; None where they are absent."""
+    def data_at(self, kind, name, step, count, rows=None):
+        """Return `count` rows of point or cell data at a time step, or some of these, in ascending
+        order; None where they are absent."""
         group = self.file["VTKHDF"]
         data = group.get(f"{kind}Data/{name}")
         if data is None:
@@ -558,7 +564,7 @@ class Result:
         columns = (COMPONENTS[name],) if name in COMPONENTS else ()
         fits = data.shape[1:] == columns and 0 <= start <= len(data) - count
         need(group, fits and data.dtype.kind in "biuf", f"{name} is no field of {count} rows a time")
-        values = data[start : start + count]
+        values = data[start : start + count] if rows is None else data[start + rows]
         need(group, name != "displacement" or np.isfinite(values).all(),
              "displacement has values that are no numbers")
         return values

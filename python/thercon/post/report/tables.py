@@ -88,8 +88,7 @@ def uncertainties(result):
             if np.isnan(value) or (key == "shear_force" and not value):
                 continue
             cells = uncertainty_cells(*known[key][2:], contact.unit(key)) if key in known else None
-            ends = [contact["s"][piece][-1] for piece in contact.pieces]
-            if key.startswith("edge_") and value in ends:
+            if contact.is_end_of_face(key, value):
                 cells = ["none: end of the face", contact.unit(key), *NO_PARTS]
             rows.append([words_of(key) + (", s" if key.startswith("edge_") else ""), number(value),
                          *(cells or ["no estimate", contact.unit(key), *NO_PARTS])])

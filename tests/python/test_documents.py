@@ -1,0 +1,47 @@
+"""The examples of docs/python.md and of the docstrings do what they say."""
+
+import contextlib
+import doctest
+import io
+import re
+
+import conftest
+import numpy as np
+import pytest
+import thercon
+import thercon.results
+import thercon.runs
+
+BLOCK = re.compile(r"```python\n(.*?)```\n(?:\n((?:    [^\n]*\n)+))?", re.S)
+
+
+def blocks(document):
+    """Return the blocks of code of a document with what they are said to print."""
+    return BLOCK.findall((conftest.ROOT / "docs" / document).read_text())
+
+
+def run_block(code, space):
+    """Run a block; return what it prints."""
+    printed = io.StringIO()
+    with contextlib.redirect_stdout(printed):
+        exec(compile(code, "<document>", "exec"), space)
+    return printed.getvalue()
+
+
+def test_the_examples_print_what_the_document_says(joint):
+    space = {}
+    for code, said in blocks("python.md"):
+        assert run_block(code, space) == re.sub("^    ", "", said, flags=re.M)
+    table = space["table"]
+    assert table["heat_rate JOINT"] == pytest.approx(
+        conftest.heat_rate(table["pressure"], table["factor"]), rel=1e-9)
+    assert conftest.heat_rate(np.array(space["pressures"]), 2e-4, 0.95) == pytest.approx(
+        space["measured"], abs=5e-4)
+
+
+@pytest.mark.parametrize("module", [thercon, thercon.runs, thercon.results])
+def test_the_examples_of_the_docstrings(joint, module):
+    thercon.run("joint.inp", out="results")
+    space = {"thercon": thercon, "result": thercon.open("results/joint")}
+    failed, tried = doctest.testmod(module, extraglobs=space)
+    assert failed == 0 and tried > 3

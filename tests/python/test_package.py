@@ -1,0 +1,171 @@
+"""The package thercon: what it imports, runs, tables of runs, and results."""
+
+import os
+import signal
+import subprocess
+import sys
+import time
+
+import conftest
+import h5py
+import numpy as np
+import pytest
+import thercon
+
+HEAVY = "numpy", "h5py", "pandas", "matplotlib"
+
+
+def test_import_takes_no_other_package(joint):
+    """And a run needs no pandas, as long as no table is asked for."""
+    code = (f"import sys; sys.path.insert(0, {str(conftest.ROOT / 'python')!r}); import thercon\n"
+            f"assert not set({HEAVY}) & set(sys.modules)\n"
+            "thercon.run('joint.inp').interface('JOINT').pressure\n"
+            "assert not {'pandas', 'matplotlib'} & set(sys.modules)\n")
+    subprocess.run([sys.executable, "-c", code], check=True)
+
+
+def test_quantities_are_those_of_the_file(joint):
+    result = thercon.run("joint.inp", out="out", pressure=20, errors="full")
+    with h5py.File("out/joint.vtkhdf") as file:
+        contact = file["contact/JOINT"]
+        of_interface = result.interface("joint")
+        for name in ("pressure", "x", "s", "normal_force", "heat_flux"):
+            assert np.array_equal(of_interface[name], contact[name][()])
+        assert of_interface.units["pressure"] == "stress"
+        assert np.array_equal(result.times, file["history/time"][()])
+        assert np.array_equal(result.history.load, file["history/load"][()])
+        points, nodes = file["VTKHDF/PointData"], file["VTKHDF/PointData/node_id"][()]
+        place = int(np.flatnonzero(nodes == 8)[0])
+        for name in ("temperature", "displacement", "stress"):
+            values = points[name][()].reshape(len(result.times), len(nodes), -1)[:, place]
+            assert np.array_equal(result.node(8)[name].reshape(values.shape), values)
+        rows = file["uncertainty/JOINT/heat_rate"][()]
+        mine = result.errors.query("where == 'JOINT' and quantity == 'heat_rate'")
+        assert np.array_equal(mine[["value", "uncertainty", "change", "scatter", "iteration"]], rows)
+        assert set(mine["unit"]) == {"power"}
+    assert list(result.interface("JOINT").table()["heat_rate"]) == list(of_interface.heat_rate)
+    assert result.interface("JOINT").points(-1)["pressure"].to_numpy() == pytest.approx(20.0)
+
+
+def test_groups_of_the_history_are_arrays_of_their_own(joint):
+    thercon.run("joint.inp")
+    with h5py.File("joint.vtkhdf", "a") as file:
+        group = file.create_group("history/PRINT/TOP")
+        group.create_dataset("temperature", data=np.arange(8.0).reshape(4, 2)).attrs["unit"] = "C"
+    history = thercon.open("joint").history
+    assert history["PRINT"].TOP.temperature.shape == (4, 2)
+    assert history.PRINT.TOP.units == {"temperature": "C"}
+    table = history.PRINT.TOP.table()
+    assert list(table) == ["temperature 1", "temperature 2"] and list(table.index) == [0.25, 0.5, 0.75, 1]
+    assert "heat_in" in history.table()
+
+
+def test_stress_of_a_node_between_materials_is_that_of_the_one_named(joint):
+    """Side by side under one strain, the stress of each is in proportion to its modulus."""
+    cards = joint.read_text().split("*SURFACE, NAME=UPPER")[0]
+    cards = cards.replace("5, 0., 10.\n6, 10., 10.\n", "5, 20., 0.\n6, 20., 10.\n").replace(
+        "2, 5, 6, 7, 8", "2, 2, 5, 6, 3").replace("*NODE, NSET=TOP\n7, 10., 20.\n8, 0., 20.\n", "")
+    cards = cards.replace("*SOLID SECTION, ELSET=BLOCKS, MATERIAL=STEEL", "\n".join((
+        "*MATERIAL, NAME=SOFT", "*ELASTIC", "1.05E5, 0.", "*ELSET, ELSET=ONE", "1", "*ELSET, ELSET=TWO",
+        "2", "*SOLID SECTION, ELSET=ONE, MATERIAL=STEEL", "*SOLID SECTION, ELSET=TWO, MATERIAL=SOFT")))
+    for old, new in (("2.1E5, 0.3", "2.1E5, 0."), ("*CONDUCTIVITY\n0.05\n", ""), ("*REFINE, LEVELS=2\n", "")):
+        cards = cards.replace(old, new)
+    joint.write_text(cards + "*STEP\n*STATIC\n*BOUNDARY\n1, 1\n1, 2\n2, 2\n5, 2\n3, 2, 2, 0.1\n"
+                     "4, 2, 2, 0.1\n6, 2, 2, 0.1\n*END STEP\n")
+    result = thercon.run("joint.inp")
+    with pytest.raises(thercon.UserError, match=r"node\(3, body=1\)"):
+        result.node(3).stress
+    assert result.node(3).displacement[-1, 1] == pytest.approx(0.1)
+    for material, modulus in ((1, 2.1e5), (2, 1.05e5)):
+        assert result.node(3, material=material).stress[-1, 1] == pytest.approx(0.01 * modulus)
+
+
+def test_a_summary_has_the_columns_of_a_table_of_runs(joint):
+    table = thercon.run_many("joint.inp", {"pressure": [20]}, out="many", errors="last")
+    summary = thercon.open("many/joint-1").summary
+    first = list(table).index("peak_megabytes") + 1
+    assert sorted(name for name in list(table)[first:] if not name.endswith(" uncertainty")) == \
+        sorted(summary.index)
+    for name, row in summary.iterrows():
+        values = table.loc[0, name], table.get(f"{name} uncertainty", [np.nan])[0]
+        assert values == pytest.approx((row["value"], row["uncertainty"]), rel=1e-14, abs=1e-14,
+                                       nan_ok=True)
+
+
+def test_a_failed_check_is_no_exception(joint):
+    joint.write_text(joint.read_text() + '*VERIFY, KIND=ANALYTIC, SOURCE="resistances"\n'
+                     "heat_rate, JOINT, LAST, 3.6, 1.E-9\nNT, 8, LAST, 199., 1.E-9\n")
+    result = thercon.run("joint.inp")
+    assert result.status == 4 and list(result.checks["passed"]) == [True, False]
+    assert result.checks["found"][1] == pytest.approx(200.0)
+    assert thercon.open("joint").status == 4
+
+
+def test_an_exception_has_the_messages_with_their_places(joint):
+    lines = joint.read_text().splitlines()
+    at = lines.index("*FRICTION")
+    lines[at] = "*FRICTON"
+    joint.write_text("\n".join(lines))
+    with pytest.raises(thercon.RunError) as raised:
+        thercon.run("joint.inp")
+    error = raised.value
+    assert error.status == 1 and error.document["command"] == "run"
+    (message,) = [each for each in error.messages if each.severity == "error"]
+    assert (message.file, message.line, message.column) == ("joint.inp", at + 1, 1)
+    assert str(error).startswith(f"joint.inp:{at + 1}:1: error: ")
+    with pytest.raises(thercon.RunError, match="thercon: error: option --errors needs"):
+        thercon.run("joint.inp", errors="some")
+
+
+def test_a_name_that_is_not_there_is_met_with_the_nearest(joint):
+    result = thercon.run("joint.inp")
+    with pytest.raises(AttributeError, match="nearest: 'temperature'"):
+        result.node(8).temprature
+    with pytest.raises(thercon.UserError, match="nearest: 'JOINT'"):
+        result.interface("JOIN")
+    with pytest.raises(thercon.UserError, match="no node 99999"):
+        result.node(99999)
+    with pytest.raises(KeyError, match="nearest: 'heat_rate JOINT'"):
+        thercon.run_many("joint.inp", {"pressure": [20]}, quantities=["heat_rate"])
+
+
+def test_a_row_that_fails_leaves_the_others_alone(joint):
+    """A factor below 0 is refused."""
+    table = thercon.run_many("joint.inp", {"factor": [2e-4, -1.0, 1e-4]}, jobs=2, out="many",
+                             pressure=25)
+    assert list(table["status"]) == [0, 1, 0]
+    assert table["reason"][1] and np.isnan(table["heat_rate JOINT"][1])
+    for row in (0, 2):
+        assert table["heat_rate JOINT"][row] == pytest.approx(
+            conftest.heat_rate(25, table["factor"][row]), rel=1e-9)
+
+
+def test_a_mistake_in_the_table_is_an_exception(joint):
+    with pytest.raises(thercon.RunError) as raised:
+        thercon.run_many("joint.inp", {"pressure": [20], "presure": [30]}, out="many")
+    (message,) = raised.value.messages
+    assert (message.file, message.line, message.column) == ("many/joint.values.csv", 1, 10)
+
+
+def test_ctrl_c_ends_a_table_and_the_same_call_goes_on(joint):
+    """In another process, which is told to end while its rows run."""
+    cards = joint.read_text().replace("0.25, 1.", "0.001, 1.")
+    joint.write_text(cards)
+    code = (f"import sys; sys.path.insert(0, {str(conftest.ROOT / 'python')!r}); import thercon\n"
+            "table = thercon.run_many('joint.inp', {'pressure': [10, 20, 30, 40]}, out='many')\n"
+            "table.to_csv('answer.csv')")
+    process = subprocess.Popen([sys.executable, "-c", code], stderr=subprocess.PIPE, text=True)
+    until = time.monotonic() + 300
+    while not os.path.exists("many/joint-1.csv"):
+        assert time.monotonic() < until and process.poll() is None
+        time.sleep(0.01)
+    process.send_signal(signal.SIGINT)
+    _, said = process.communicate()
+    assert "KeyboardInterrupt" in said and not os.path.exists("answer.csv")
+    first = os.stat("many/joint-1.vtkhdf").st_mtime_ns
+    subprocess.run([sys.executable, "-c", code], check=True)
+    assert os.stat("many/joint-1.vtkhdf").st_mtime_ns == first
+    table = thercon.run_many("joint.inp", {"pressure": [10, 20, 30, 40]}, out="many")
+    assert table["heat_rate JOINT"].to_numpy() == pytest.approx(
+        conftest.heat_rate(table["pressure"].to_numpy()), rel=1e-9)
+    assert set(table["reason"]) == {"its result is finished"}
