@@ -8,7 +8,7 @@ set_target_properties(thercon PROPERTIES
    INSTALL_RPATH_USE_LINK_PATH TRUE
    BUILD_WITH_INSTALL_RPATH TRUE)
 set(installed_folder "${CMAKE_INSTALL_DATADIR}/thercon")
-# Of a wheel of Python the program is one of the scripts; the package is copied by scikit-build-core.
+# In a wheel of Python the program is one of the scripts; scikit-build-core copies the package.
 if(SKBUILD)
    install(TARGETS thercon RUNTIME DESTINATION "${SKBUILD_SCRIPTS_DIR}" COMPONENT program)
    return()
@@ -16,7 +16,7 @@ endif()
 install(TARGETS thercon RUNTIME)
 install(DIRECTORY docs input post python DESTINATION "${installed_folder}" USE_SOURCE_PERMISSIONS
    PATTERN "__pycache__" EXCLUDE)
-install(FILES README.md CHANGELOG.md LICENSE pyproject.toml DESTINATION "${installed_folder}")
+install(FILES README.md CHANGELOG.md LICENSE DESTINATION "${installed_folder}")
 file(MAKE_DIRECTORY "${PROJECT_BINARY_DIR}/links")
 foreach(name IN ITEMS plot report compare)
    file(CREATE_LINK "../${installed_folder}/post/${name}"

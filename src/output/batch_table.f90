@@ -88,8 +88,8 @@ contains
 
    !> Writes the CSV file; one that is there is replaced in one instant. Fields of a run that was
    !> not begun are empty; those of one that runs say how far it is. Of a result that was finished
-   !> before, CPU time and memory are not known. Rows of a table begin with their values and end with
-   !> their results.
+   !> before, CPU time and memory are not known. Rows of a table begin with their values and end
+   !> with their results.
    !> Error: status_internal, when the file cannot be written.
    subroutine write_batch(path, outcomes, error, names, values)
       character(*), intent(in) :: path

@@ -1,6 +1,6 @@
-!> A run as one document in JSON, which `--json` prints, and as a row of a table of runs: its results
-!> at the last increment, with their uncertainties, and its checks. docs/results.md describes the
-!> document, docs/batch.md the row.
+!> A run as one document in JSON, which `--json` prints, and as a row of a table of runs: its
+!> results at the last increment, with their uncertainties, and its checks. docs/results.md
+!> describes the document, docs/batch.md the row.
 module run_documents
    use contact_points, only: contact_points_type
    use contact_quantities, only: contact_table, contact_values, estimated, has_quantity

@@ -1,9 +1,10 @@
-"""The Debian package, the Python package of post/, the manual page and the completion of bash."""
+"""The Debian package, the Python package, the manual page and the completion of bash."""
 
 import os
 import re
 import shutil
 import sys
+import tomllib
 from pathlib import Path
 
 import h5py
@@ -80,20 +81,40 @@ def test_bash_completes_commands_options_and_files(root, tmp_path, words, offere
     assert set(said.split()) == offered
 
 
-def test_post_is_an_installable_package_of_the_same_version(root, tmp_path):
-    source = shutil.copytree(root / "share/thercon", tmp_path / "source")
-    run(sys.executable, "-m", "pip", "install", "--no-index", "--no-build-isolation", "--no-deps",
-        "--target", tmp_path / "site", source)
-    paths = os.pathsep.join([str(tmp_path / "site"), *filter(None, sys.path)])
-    environment = os.environ | {"PYTHONPATH": paths}
-    assert "usage" in run(tmp_path / "site/bin/thercon-compare", "--help", env=environment)
-    run(PROGRAM, "run", "--quiet", ROOT / "input/examples/two_rods.inp", "--out", tmp_path)
-    run(tmp_path / "site/bin/thercon-report", tmp_path / "two_rods.vtkhdf", "--out", tmp_path,
-        env=environment)
+@pytest.fixture
+def site(root, tmp_path):
+    """Package and program where `pip install --target` copies them; the wheel itself takes a
+    compilation."""
+    shutil.copytree(root / "share/thercon/python/thercon", tmp_path / "site/thercon")
+    (tmp_path / "site/bin").mkdir()
+    shutil.copy(root / "bin/thercon", tmp_path / "site/bin/thercon")
+    return tmp_path / "site"
+
+
+def test_the_python_package_works_without_the_sources(site, tmp_path):
+    paths = os.pathsep.join([str(site), *filter(None, sys.path)])
+    environment = {key: value for key, value in os.environ.items() if key != "THERCON"} | {
+        "PYTHONPATH": paths}
+    code = (f"import thercon; assert thercon.find_program() == {str(site / 'bin/thercon')!r}\n"
+            f"print(thercon.run({str(ROOT / 'input/examples/two_rods.inp')!r}).outcome)")
+    assert run(sys.executable, "-c", code, env=environment, cwd=tmp_path) == "solved\n"
+    scripts = tomllib.loads((ROOT / "pyproject.toml").read_text())["project"]["scripts"]
+    assert set(scripts) == {"thercon-plot", "thercon-report", "thercon-compare"}
+    for name, entry in scripts.items():
+        module, function = entry.split(":")
+        code = f"import sys; from {module} import {function}; sys.exit({function}())"
+        assert "usage" in run(sys.executable, "-c", code, "--help", env=environment), name
+        if name == "thercon-report":
+            run(sys.executable, "-c", code, "two_rods", "--out", tmp_path, env=environment, cwd=tmp_path)
     assert "color-scheme" in (tmp_path / "two_rods.html").read_text()
-    version = \
-        run(PROGRAM, "--version").split()[1].rstrip(",")
-    assert (tmp_path / f"site/thercon-{version}.dist-info").is_dir()
+
+
+def test_the_version_is_that_of_cmake():
+    project = tomllib.loads((ROOT / "pyproject.toml").read_text())
+    version = project["tool"]["scikit-build"]["metadata"]["version"]
+    found = re.search(version["regex"], (ROOT / version["input"]).read_text(), re.M)["value"]
+    assert run(PROGRAM, "--version").split()[1].rstrip(",") == found
+    assert project["project"]["dynamic"] == ["version"]
 
 
 def test_help_names_the_programs_of_post_and_the_documents():
