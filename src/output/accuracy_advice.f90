@@ -105,7 +105,7 @@ contains
       end associate
    end function within_reach
 
-   !> The targets of other quantities, as the command line has them; an example where there are none.
+   !> The targets of other quantities, as the command line has them; an example where there is none.
    function others(accuracy, d) result(words)
       type(accuracy_rounds_type), intent(in) :: accuracy
       integer, intent(in) :: d

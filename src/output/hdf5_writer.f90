@@ -209,8 +209,8 @@ contains
       do i = count - 1, 0, -1
          call h5gget_obj_info_idx_f(self%id, path, i, name, kind, status)
          call self%note([status], 'cannot read group '//path)
-         if (all([(kept(k)%value /= trim(name), k=1, size(kept))])) &
-            call self%remove(path//'/'//trim(name))
+         if (any([(kept(k)%value == trim(name), k=1, size(kept))])) cycle
+         call self%remove(path//'/'//trim(name))
       end do
    end subroutine keep_members
 

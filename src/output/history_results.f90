@@ -212,15 +212,22 @@ contains
       do i = 1, size(tables)
          if (.not. counts(i)) cycle
          do k = 1, size(tables(i)%columns)
-            if (allocated(tables(i)%columns(k)%values) .and. tables(i)%columns(k)%name == name) &
-               values = tables(i)%columns(k)%values
+            call take(tables(i)%columns(k))
          end do
          do k = 1, size(tables(i)%totals)
-            if (allocated(tables(i)%totals(k)%values) .and. tables(i)%totals(k)%name == name) &
-               values = tables(i)%totals(k)%values
+            call take(tables(i)%totals(k))
          end do
       end do
       if (.not. allocated(values)) allocate (values(0))
+
+   contains
+
+      pure subroutine take(column)
+         type(table_column_type), intent(in) :: column
+
+         if (allocated(column%values) .and. column%name == name) values = column%values
+      end subroutine take
+
    end function values_of
 
    !> Rows of each set so far.
@@ -232,8 +239,8 @@ contains
       rows = [(self%histories(i)%sets(1)%rows(), i=1, size(self%histories))]
    end function rows
 
-   !> Goes on behind the first rows of an earlier file. What only steps asked for that are dropped is
-   !> removed.
+   !> Goes on behind the first rows of an earlier file, and removes what only steps that are dropped
+   !> asked for.
    subroutine go_on(self, file, rows)
       class(history_results_type), intent(inout) :: self     !! started
       type(hdf5_writer_type), intent(inout) :: file          !! the open file

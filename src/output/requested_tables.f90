@@ -1,5 +1,5 @@
-!> What *NODE PRINT and *EL PRINT ask for, as numbers: the listing prints them, the result file keeps
-!> them as histories.
+!> What *NODE PRINT and *EL PRINT ask for, as numbers: the listing prints them, the result file
+!> keeps them as histories.
 module requested_tables
    use, intrinsic :: ieee_arithmetic, only: ieee_is_nan
    use due_output, only: table_is_due

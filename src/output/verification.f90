@@ -68,7 +68,8 @@ contains
 
       do i = 1, size(self%outcomes)
          if (is_followed(model%verifications(i), record, model)) then
-            call self%levels(i)%follow(model%verifications(i), record, model, interfaces, point_node)
+            call self%levels(i)%follow(model%verifications(i), record, model, interfaces, &
+               point_node)
          end if
          if (.not. is_judged(model%verifications(i), record, model)) cycle
          if (allocated(model%verifications(i)%level)) then

@@ -281,7 +281,7 @@ contains
       type(increment_record_type), intent(in) :: record
       real(dp), allocatable :: values(:)                   !! one each, or none
       type(error_record_type) :: error
-      integer :: i
+      integer :: i, n
 
       if (quantity%name == 'stress_error') error = record%stress_error
       if (quantity%name == 'heat_flux_error') error = record%heat_flux_error
@@ -303,7 +303,8 @@ contains
       if (allocated(record%stability%leading)) then
          i = merge(1, 2, quantity%name == 'growth_rates')
          associate (found => record%stability%leading)
-            values(:min(size(values), size(found, 2))) = found(i, :min(size(values), size(found, 2)))
+            n = min(size(values), size(found, 2))
+            values(:n) = found(i, :n)
          end associate
       end if
    end function part_values

@@ -8,7 +8,8 @@ module due_output
    use time_points, only: time_points_type
    implicit none
    private
-   public :: ends_run, fields_are_due, is_followed, is_judged, is_nth, met_within, needs_recovery, table_is_due
+   public :: ends_run, fields_are_due, is_followed, is_judged, is_nth, met_within, &
+      needs_recovery, table_is_due
 
    real(dp), parameter :: landing = 1.0e-6_dp   !! of an increment: how near a time is met
 

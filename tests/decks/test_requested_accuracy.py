@@ -389,7 +389,7 @@ def test_the_corner_that_limits_a_pressure_is_named(tmp_path, targets, instead):
     process = run("run", deck, "--out", tmp_path, "--accuracy", targets)
     assert process.returncode == 4
     told, = advice_of(process, deck)
-    place = nodes_of(deck.read_text().splitlines()[1:])
+    place = nodes_of(deck.read_text().splitlines())
     node, other = map(int, re.search(r"where nodes (\d+) and (\d+) meet;", told).groups())
     assert place[node] == (1.0, 1.0) and place[other] == (1.125, 1.0)
     assert told.startswith("P peak pressure limits it: ") and told.endswith(f"--accuracy {instead}")

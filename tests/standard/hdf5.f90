@@ -316,7 +316,7 @@ module hdf5
          integer(hid_t), intent(in) :: loc_id
          character(*), intent(in) :: name
          integer, intent(in) :: idx
-         character(*), intent(out) :: obj_name
+         character(1024), intent(out) :: obj_name
          integer, intent(out) :: obj_type, hdferr
       end subroutine h5gget_obj_info_idx_f
 
