@@ -43,6 +43,7 @@ module accuracy_rounds
    type :: finding_type
       logical :: is_there = .false.        !! whether the quantity has a value and an error
       logical :: is_at_end = .false.       !! whether it is a pressure at an end of the interface
+      integer :: nodes(2) = 0              !! slave and master node of a peak pressure
       real(dp) :: value = 0.0_dp           !! of the quantity
       real(dp) :: change = 0.0_dp          !! what the round changed it by
       real(dp) :: uncertainty = 0.0_dp     !! NaN: not known
@@ -143,7 +144,7 @@ contains
       type(increment_record_type), intent(in) :: record
       type(quantity_type) :: quantity
       real(dp) :: scale, value(1)
-      integer :: d, n
+      integer :: d, n, peak
 
       n = size(self%rounds)
       self%rounds(n)%increments = record%increment
@@ -171,6 +172,8 @@ contains
                if (quantity%resolution > 0.0_dp) finding%instead = end_words(quantity%name, contact)
                if (quantity%name == 'peak_pressure') then
                   finding%is_at_end = any(peak_is_at_end(points, contact))
+                  peak = maxloc(contact%pressure, dim=1)
+                  finding%nodes = [points%slave(peak), points%master(peak)]
                   if (has_grown(self%rounds, d, record%step) .and. .not. &
                      remains(finding%no_estimate)) finding%no_estimate = grows
                end if

@@ -4,7 +4,7 @@ module accuracy_targets
    use text, only: read_real
    implicit none
    private
-   public :: accuracy_target_type, accuracy_request_type, read_request, whole_request
+   public :: accuracy_target_type, accuracy_request_type, read_request, short_name, whole_request
 
    !> Quantities that --accuracy bounds at every interface, the usual ones first, and their names
    !> there.
@@ -42,6 +42,14 @@ contains
          targets(i)%bound = bound
       end do
    end function whole_request
+
+   !> The name of a quantity on the command line.
+   pure function short_name(quantity) result(name)
+      character(*), intent(in) :: quantity    !! one that has a target
+      character(:), allocatable :: name
+
+      name = trim(short_names(findloc(quantities, quantity, dim=1)))
+   end function short_name
 
    !> Reads a request such as 1%, of the usual quantities, or force=1%,heat=2%, each quantity once;
    !> unallocated where it is none.

@@ -14,7 +14,7 @@ module model
    use mesh, only: mesh_type
    use refined_regions, only: refined_region_type
    use steps, only: step_type
-   use text, only: string_type, to_upper
+   use text, only: string_type, to_text, to_upper
    use transforms, only: partner_type, transform_type
    implicit none
    private
@@ -46,6 +46,9 @@ module model
       character(:), allocatable :: kind       !! ANALYTIC, EXTERNAL, LEGACY, FIGURE or REGRESSION
       character(:), allocatable :: source     !! where the value comes from
       character(:), allocatable :: quantity   !! dataset or nodal quantity
+      !> The value that the quantity reaches at the time that is expected; unallocated where its own
+      !> value is [that of the quantity]
+      real(dp), allocatable :: level
       character(:), allocatable :: where      !! as written; empty for /history
       logical :: at_last = .false.            !! LAST
       real(dp) :: when = 0.0_dp               !! total time, unless at_last [time]
@@ -55,6 +58,8 @@ module model
       integer :: line = 0                     !! card number in the deck
       character(:), allocatable :: address    !! file and line, such as deck.inp:36
       integer :: columns(2) = 1               !! columns of quantity and where on that card
+   contains
+      procedure :: title => title_of_check
    end type verify_type
 
    !> All that the deck says.
@@ -105,6 +110,15 @@ module model
    end type model_type
 
 contains
+
+   !> What a check is about, as on its card.
+   pure function title_of_check(self) result(title)
+      class(verify_type), intent(in) :: self
+      character(:), allocatable :: title   !! such as NT, or NT reaches 500
+
+      title = trim(self%quantity)
+      if (allocated(self%level)) title = title//' reaches '//to_text(self%level)
+   end function title_of_check
 
    !> The constant that one of the uncertainty_words means, in any case; YES is LAST; -1 for none.
    pure integer function uncertainty_named(word) result(uncertainty)

@@ -7,7 +7,7 @@ module quantity_types
    private
    public :: quantity_type, find_quantity
    public :: of_history, of_bodies, of_passes, of_interface, of_contact_points, of_nodes, &
-      of_points, of_elements, of_sections, of_references
+      of_points, of_elements, of_sections, of_references, of_motions
    public :: needs_nothing, needs_temperature, needs_heat, needs_mechanics, needs_coupling
    public :: needs_storage, needs_dilatation, needs_friction_heat, needs_wear, needs_stability
    public :: needs_branch, needs_sections, needs_plasticity, needs_creep, needs_laws, &
@@ -26,6 +26,7 @@ module quantity_types
    integer, parameter :: of_elements = 8    !! an increment and element: /VTKHDF/CellData
    integer, parameter :: of_sections = 9    !! an increment and pre-tension section: /history
    integer, parameter :: of_references = 10 !! an increment and REF NODE of a section: /history
+   integer, parameter :: of_motions = 11    !! an analysis and leading motion: /stability
 
    ! Fields that a step must solve for a quantity to have a value; a deck none of whose steps does
    ! so has no dataset of it.

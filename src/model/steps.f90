@@ -110,6 +110,7 @@ module steps
       real(dp) :: strain_limit = 0.01_dp
       !> *STABILITY at every n-th increment and the last; 0 never
       integer :: stability_frequency = 0
+      integer :: stability_modes = 3                 !! MODES=, leading motions that are told
       real(dp) :: largest_change = huge(1.0_dp)      !! DELTMX=, of a temperature in an increment
       type(continuation_type) :: continuation = continuation_type()
       integer :: max_increments = 100                !! INC=

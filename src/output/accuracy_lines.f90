@@ -2,17 +2,17 @@
 !> the group `/accuracy` of the result file.
 module accuracy_lines
    use, intrinsic :: ieee_arithmetic, only: ieee_is_nan
+   use accuracy_advice, only: advice_of, demand_name
    use accuracy_rounds, only: accuracy_round_type, accuracy_rounds_type, finding_type
    use contact_points, only: contact_points_type
    use contact_quantities, only: estimated
    use growing_datasets, only: growing_dataset, growing_dataset_type, write_integers, write_once
    use hdf5_writer, only: as_integer, as_real, hdf5_writer_type
    use kinds, only: dp
-   use model, only: unit_labels_type
+   use model, only: model_type, unit_labels_type
    use no_estimates, only: at_corner, grows, no_reason, words_of_reason
    use quantity_types, only: quantity_type
    use run_summaries, only: accuracy_words_type
-   use summary, only: words_of
    use text, only: append, counted, digits_above, few_digits, percent, to_text
    use unit_labels, only: unit_label
    implicit none
@@ -29,16 +29,16 @@ module accuracy_lines
 contains
 
    !> All that is told of the rounds; nothing where no accuracy is requested.
-   function told_of_rounds(accuracy, has_checks, interfaces, labels) result(words)
+   function told_of_rounds(accuracy, has_checks, interfaces, model) result(words)
       type(accuracy_rounds_type), intent(in) :: accuracy
       logical, intent(in) :: has_checks                      !! whether the deck has *VERIFY checks
       type(contact_points_type), intent(in) :: interfaces(:) !! contact points of every interface
-      type(unit_labels_type), intent(in) :: labels           !! units of the deck
+      type(model_type), intent(in) :: model
       type(accuracy_words_type) :: words
       character(:), allocatable :: name
       integer :: i
 
-      allocate (words%targets(0), words%rounds(0))
+      allocate (words%targets(0), words%rounds(0), words%advice(0))
       words%missed = ''
       if (.not. accuracy%is_on) return
       if (size(accuracy%rounds) == 0) then
@@ -50,7 +50,7 @@ contains
       do i = 1, size(accuracy%demands)
          name = demand_name(accuracy, i, interfaces)
          name = name//repeat(' ', max(name_width - len(name), 0))
-         call append(words%targets, name//' '//target_words(accuracy, i, labels))
+         call append(words%targets, name//' '//target_words(accuracy, i, model%units))
       end do
       if (any([(is_of_more(accuracy, i), i=1, size(accuracy%demands))])) call append( &
          words%targets, &
@@ -64,6 +64,8 @@ contains
       do i = 1, size(accuracy%rounds)
          call append(words%rounds, round_words(i, accuracy%rounds(i)))
       end do
+      if (accuracy%reason /= '') words%advice = advice_of(accuracy, interfaces, &
+         model%mesh%node_number)
    end function told_of_rounds
 
    !> Whether the per cent told of a target are not those of its value.
@@ -116,18 +118,6 @@ contains
       if (missed > most_named) words = words//' and '//to_text(missed - most_named)//' more'
       if (missed > 0) words = verdict(accuracy)//'; not met'//words
    end function missed_words
-
-   !> Interface and quantity of a target.
-   function demand_name(accuracy, d, interfaces) result(name)
-      type(accuracy_rounds_type), intent(in) :: accuracy
-      integer, intent(in) :: d
-      type(contact_points_type), intent(in) :: interfaces(:)
-      character(:), allocatable :: name
-
-      associate (demand => accuracy%demands(d))
-         name = interfaces(demand%interface)%name//' '//words_of(estimated(demand%quantity)%name)
-      end associate
-   end function demand_name
 
    !> The uncertainty at the end of the step that is furthest from a target; the summary tells the
    !> values of the last step.

@@ -8,7 +8,7 @@ module growing_datasets
       h5screate_simple_f, h5sselect_hyperslab_f, h5t_native_double, hid_t, hsize_t
    use hdf5_writer, only: as_integer, as_real, hdf5_writer_type, stored_type
    use kinds, only: dp, long
-   use quantity_types, only: of_bodies, of_contact_points, quantity_type
+   use quantity_types, only: of_bodies, of_contact_points, of_motions, quantity_type
    implicit none
    private
    public :: growing_dataset_type, growing_dataset, quantity_dataset, bytes_in, flush_sets, &
@@ -79,7 +79,7 @@ contains
       type(growing_dataset_type) :: dataset
       integer :: width
 
-      width = merge(quantity%values, 0, quantity%values > 1)
+      width = merge(quantity%values, 0, quantity%values > 1 .or. quantity%kind == of_motions)
       if (present(places)) then
          if (any(quantity%kind == [of_bodies, of_contact_points])) width = places
       end if

@@ -10,7 +10,7 @@ module hdf5_writer
       h5pcreate_f, h5pclose_f, h5pset_libver_bounds_f, h5pset_buffer_f, h5p_file_access_f, &
       h5p_dataset_create_f, h5p_dataset_xfer_f, &
       h5f_libver_v18_f, h5f_libver_latest_f, h5gcreate_f, h5gclose_f, h5lcreate_hard_f, &
-      h5ldelete_f, h5lexists_f, &
+      h5ldelete_f, h5lexists_f, h5gn_members_f, h5gget_obj_info_idx_f, &
       h5screate_simple_f, h5screate_f, h5sclose_f, h5s_scalar_f, h5dcreate_f, h5dwrite_f, &
       h5dclose_f, h5oopen_f, h5oclose_f, h5aopen_f, h5acreate_f, h5aexists_f, h5awrite_f, &
       h5aclose_f, h5tcopy_f, h5tclose_f, h5tset_cset_f, h5tset_size_f, h5t_cset_utf8_f, &
@@ -31,6 +31,7 @@ module hdf5_writer
    integer, parameter :: as_byte = 4      !! stored as unsigned byte
    !> Bytes of the buffer in which HDF5 converts types; its own default, 1 MB, is cleared each time.
    integer(hsize_t), parameter :: conversion_bytes = 16384_hsize_t
+   integer, parameter :: longest_name = 1024   !! of a member of a group
 
    !> A file that is being written.
    type :: hdf5_writer_type
@@ -49,6 +50,7 @@ module hdf5_writer
       procedure :: link => link_dataset
       procedure :: has
       procedure :: remove
+      procedure :: keep_members
       procedure :: write => write_strings
       generic :: set => set_attribute, set_integers
       procedure :: set_fixed_text
@@ -191,6 +193,26 @@ contains
       call h5ldelete_f(self%id, path, status)
       call self%note([status], 'cannot remove '//path)
    end subroutine remove
+
+   !> Removes the members of a group that are not among some.
+   subroutine keep_members(self, path, kept)
+      class(hdf5_writer_type), intent(inout) :: self
+      character(*), intent(in) :: path                    !! of the group, which exists
+      type(string_type), intent(in) :: kept(:)            !! names of members
+      character(longest_name) :: name
+      integer :: count, i, k, kind, status
+
+      if (allocated(self%error)) return
+      call h5gn_members_f(self%id, path, count, status)
+      call self%note([status], 'cannot read group '//path)
+      if (allocated(self%error)) return
+      do i = count - 1, 0, -1
+         call h5gget_obj_info_idx_f(self%id, path, i, name, kind, status)
+         call self%note([status], 'cannot read group '//path)
+         if (any([(kept(k)%value == trim(name), k=1, size(kept))])) cycle
+         call self%remove(path//'/'//trim(name))
+      end do
+   end subroutine keep_members
 
    !> Gives a dataset a second name, unless it has it.
    subroutine link_dataset(self, path, second_path)

@@ -248,6 +248,10 @@ contains
       do i = 1, size(run%accuracy%rounds)
          call self%page%line('  '//run%accuracy%rounds(i)%value)
       end do
+      if (size(run%accuracy%advice) > 0) call self%page%line('')
+      do i = 1, size(run%accuracy%advice)
+         call self%page%wrapped('   ', run%accuracy%advice(i)%value)
+      end do
       warnings = [model%warnings, run%warnings]
       call self%page%list('WARNINGS', warnings)
       if (size(warnings) == 0) then

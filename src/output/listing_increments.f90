@@ -5,7 +5,8 @@ module listing_increments
    use contact_points, only: contact_points_type
    use contact_quantities, only: contact_values, estimated, has_quantity
    use field_quantities, only: maxima
-   use increment_quantities, only: history_estimated, history_value, part_values, stability_words
+   use increment_quantities, only: history_estimated, history_value, leading_words, &
+      part_values, stability_words
    use interface_quantities, only: is_end_of_face
    use kinds, only: dp
    use listing_text, only: column, in_columns, page_type, to_right, zone_counts
@@ -199,6 +200,10 @@ contains
       end if
       if (stability_words(record) /= '') call page%wrapped('   ', 'stability: '// &
          stability_words(record))
+      if (allocated(record%stability)) then
+         if (allocated(record%stability%leading)) call page%wrapped('   ', &
+            leading_words(record%stability%leading))
+      end if
       associate (work => record%work)
          if (work%columns_full > 0) call page%line('   refactored '// &
             to_text(work%columns_again)//' of '//to_text(work%columns_full)//' columns ('// &

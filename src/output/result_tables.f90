@@ -7,7 +7,8 @@ module result_tables
    use hdf5_writer, only: hdf5_writer_type
    use increment_quantities, only: part_values, history_value, pass_value
    use kinds, only: dp
-   use quantity_types, only: of_bodies, of_history, of_references, of_sections, quantity_type
+   use quantity_types, only: of_bodies, of_history, of_motions, of_references, of_sections, &
+      quantity_type
    use records, only: contact_record_type, increment_record_type, uncertainty_type
    use reported_quantities, only: geometry
    use solution_report, only: iteration_record_type
@@ -63,7 +64,8 @@ contains
       integer :: i
 
       do i = 1, size(self%sets)
-         if (any(self%quantities(i)%kind == [of_bodies, of_sections, of_references])) then
+         if (any(self%quantities(i)%kind == [of_bodies, of_sections, of_references, &
+            of_motions])) then
             call self%sets(i)%append(part_values(self%quantities(i), record))
          else
             call self%sets(i)%append([history_value(self%quantities(i)%name, record)])

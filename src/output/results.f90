@@ -15,6 +15,7 @@ module results
    use field_quantities, only: maxima
    use file_calls, only: identity_of, remove_file, rename_file, try_file
    use growing_datasets, only: bytes_in, flush_sets
+   use history_results, only: history_results_type
    use materials, only: melts, of_expansion, reference_nodes
    use increment_quantities, only: history_estimated
    use result_tables, only: result_table_type, with_uncertainty, write_geometry
@@ -27,7 +28,7 @@ module results
    use quantity_types, only: needs_coupling, needs_dilatation, needs_friction_heat, needs_wear, &
       needs_branch, needs_heat, needs_mechanics, needs_nothing, needs_sections, needs_stability, &
       needs_storage, needs_temperature, of_bodies, of_contact_points, of_history, of_interface, &
-      of_passes, of_references, of_sections, quantity_type, last_need, needs_creep, &
+      of_motions, of_passes, of_references, of_sections, quantity_type, last_need, needs_creep, &
       needs_plasticity, needs_laws, needs_references, needs_melting
    use records, only: increment_record_type
    use reported_quantities, only: datasets, geometry
@@ -63,6 +64,7 @@ module results
       type(status_file_type) :: passes                        !! `.cvg`
       type(field_results_type) :: fields                      !! `/VTKHDF`
       type(restart_results_type) :: restarts                  !! `/restart`
+      type(history_results_type) :: histories                 !! of sets, in `/history`
       !> `/history`, `/convergence`, `/stability`, `/contact/<name>` of each interface, then, where
       !> uncertainties are estimated, `/uncertainty` and `/uncertainty/<name>` of each interface,
       !> each body and, with ERRORS=FULL, the increment
@@ -144,8 +146,8 @@ contains
       integer, intent(in) :: element_points(:, :)         !! (8, elements) points, like the nodes
       type(string_type), intent(in) :: cards(:)           !! card images as read
       type(error_type), allocatable, intent(out) :: error !! what went wrong
-      type(quantity_type), allocatable :: along_z(:), of_cuts(:), of_history_alone(:), &
-         of_stability(:)
+      type(quantity_type), allocatable :: along_z(:), leading(:), of_cuts(:), &
+         of_history_alone(:), of_stability(:)
       logical :: has(0:last_need)
       integer :: bodies, i, expected, n
 
@@ -161,6 +163,7 @@ contains
       expected = max(1, nint(min(sum(min(planned_increments(model%steps), &
          real(model%steps%max_increments, dp))), 1.0e6_dp)))
       call self%fields%start(model, interfaces, point_node, has, expected)
+      call self%histories%start(model, expected)
       self%has_contact = n > 0
       if (self%has_contact) call self%contact_grid%start_grid(datasets(of_contact_points, has), &
          [quantity_type ::], sum([(size(interfaces(i)%slave), i=1, n)]), 0, expected)
@@ -170,7 +173,9 @@ contains
          of_stability = datasets(of_history, has)
          of_history_alone = pack(of_stability, of_stability%needs /= needs_stability)
          of_stability = pack(of_stability, of_stability%needs == needs_stability)
-         if (size(of_stability) > 0) of_stability = [of_history_alone(1), of_stability]
+         leading = datasets(of_motions, has)
+         leading%values = maxval([0, model%steps%stability_modes])
+         if (size(of_stability) > 0) of_stability = [of_history_alone(1), of_stability, leading]
          call tables(stability)%start('/stability', of_stability, 0, expected)
          of_cuts = datasets(of_sections, has)
          of_cuts%values = size(section_nodes(model%couplings))
@@ -231,6 +236,7 @@ contains
             end do
          end do
          call self%fields%go_on(file, rows(2))
+         call self%histories%go_on(file, rows(3 + size(self%tables):))
          call self%restarts%go_on(file, restart, counts)
          call file%remove('/uncertainty/reasons')
          call write_reasons(file, model)
@@ -289,10 +295,11 @@ contains
          if (allocated(record%history_uncertainties)) call self%tables(size(self%tables))% &
             append(record%history_uncertainties)
       end if
+      call self%histories%append(record, model)
       if (fields_are_due(record, model)) call self%fields%append(record, interfaces)
       if (present(restart)) then
          rows = [self%accepted, self%fields%increments, (self%tables(i)%rows(), &
-            i=1, size(self%tables))]
+            i=1, size(self%tables)), self%histories%rows()]
          call integers(restart, 'rows', rows)
          call self%restarts%append(record, restart, model%steps(record%step)%overlays_restarts)
          self%file%is_synced = .true.
@@ -387,7 +394,7 @@ contains
       integer(long) :: bytes
       integer :: i
 
-      bytes = bytes_in(self%fields%sets)
+      bytes = bytes_in(self%fields%sets) + self%histories%bytes()
       if (self%has_contact) bytes = bytes + bytes_in(self%contact_grid%sets)
       do i = 1, size(self%tables)
          bytes = bytes + bytes_in(self%tables(i)%sets)
@@ -451,6 +458,7 @@ contains
          do i = 1, size(self%tables)
             call flush_sets(self%tables(i)%sets, file)
          end do
+         call self%histories%flush(file)
          if (is_new) then
             call file%set('/history/load', 'label', or_blank(model%load_label))
             call file%set('/history/load', 'unit', unit_in_words(trim(merge('time       ', &

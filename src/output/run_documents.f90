@@ -41,6 +41,7 @@ contains
          call document%put(or_blank(model%load_label), 'load_label')
          if (allocated(summary%load_factor)) call document%put(summary%load_factor, 'load_factor')
          if (summary%stability /= '') call document%put(summary%stability, 'stability')
+         if (allocated(summary%leading)) call put_leading(document, summary%leading)
          call document%open('{', 'interfaces')
          do i = 1, size(interfaces)
             call put_interface(document, row, summary, model, interfaces(i), i)
@@ -51,6 +52,22 @@ contains
       end if
       call document%close('}')
    end subroutine put_summary
+
+   !> Leading small motions, the fastest first.
+   subroutine put_leading(document, leading)
+      type(json_type), intent(inout) :: document
+      real(dp), intent(in) :: leading(:, :)          ! (2, motions) growth rate, period
+      integer :: i
+
+      call document%open('[', 'leading_modes')
+      do i = 1, size(leading, 2)
+         call document%open('{')
+         call document%put(leading(1, i), 'growth_rate')
+         call document%put(leading(2, i), 'period')
+         call document%close('}')
+      end do
+      call document%close(']')
+   end subroutine put_leading
 
    subroutine put_interface(document, row, summary, model, points, i)
       type(json_type), intent(inout) :: document
@@ -199,7 +216,7 @@ contains
       do i = 1, size(verifier%outcomes)
          associate (check => model%verifications(i), outcome => verifier%outcomes(i))
             call document%open('{')
-            call document%put(trim(check%quantity), 'quantity')
+            call document%put(check%title(), 'quantity')
             call document%put(check%where, 'where')
             call document%put(check%address, 'address')
             call document%put(check%value, 'expected')

@@ -179,7 +179,7 @@ contains
          self%run%verify_failed = counts(2)
       end if
       self%run%accuracy = told_of_rounds(accuracy, self%run%verify_passed + &
-         self%run%verify_failed > 0, interfaces, model%units)
+         self%run%verify_failed > 0, interfaces, model)
       self%run%is_finished = .not. self%judgement%ended_early .and. &
          self%run%accuracy%later_round == 0
       call self%results%finish(model, interfaces, self%run, accuracy, self%failed, error)
@@ -218,13 +218,17 @@ contains
 
       allocate (lines(0))
       call self%listing%summary%add_lines(model, interfaces, lines)
-      associate (targets => self%run%accuracy%targets, rounds => self%run%accuracy%rounds)
+      associate (targets => self%run%accuracy%targets, rounds => self%run%accuracy%rounds, &
+         advice => self%run%accuracy%advice)
          do i = 1, size(targets)
             ! The verdict is the first one.
             call append(lines, repeat(' ', merge(0, 3, i == 1))//targets(i)%value)
          end do
          do i = 1, size(rounds)
             call append(lines, rounds(i)%value)
+         end do
+         do i = 1, size(advice)
+            call append(lines, '   '//advice(i)%value)
          end do
       end associate
    end function summary_lines
@@ -250,6 +254,9 @@ contains
          call members%open('[', 'lines')
          do i = 1, size(accuracy%targets)
             call members%put(accuracy%targets(i)%value)
+         end do
+         do i = 1, size(accuracy%advice)
+            call members%put(accuracy%advice(i)%value)
          end do
          call members%close(']')
          call members%close('}')

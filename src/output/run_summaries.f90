@@ -34,6 +34,7 @@ module run_summaries
    type :: accuracy_words_type
       type(string_type), allocatable :: targets(:)  !! verdict, a line for each target, and remarks
       type(string_type), allocatable :: rounds(:)   !! table of the rounds
+      type(string_type), allocatable :: advice(:)   !! what limits one that is not reached
       character(:), allocatable :: missed   !! verdict and targets not met; empty where all are
       integer :: later_round = 0            !! round that follows, 0 for none
    end type accuracy_words_type

@@ -7,7 +7,7 @@ module summary
       zone_words
    use contact_system, only: contact_open, contact_stick
    use interface_quantities, only: is_end_of_face, rises_to_end
-   use increment_quantities, only: stability_words
+   use increment_quantities, only: leading_words, stability_words
    use field_quantities, only: maxima
    use kinds, only: dp
    use materials, only: in_plane, melts
@@ -32,6 +32,7 @@ module summary
    integer, parameter :: field_width = 20   !! of the name of a field's range
    integer, parameter :: step_width = 400   !! longest line of a step
    integer, parameter :: step_column = 15   !! columns of each of its numbers
+   integer, parameter :: leading_in_line = 3   !! leading modes, at least
    character(*), parameter :: step_quantities(3) = [character(13) :: 'normal_force', 'heat_rate', &
       'peak_pressure']
    character(*), parameter :: step_head = '  step           time   normal force      heat rate'// &
@@ -63,6 +64,7 @@ module summary
       type(string_type), allocatable, private :: steps(:)   !! a line for each step and interface
       real(dp), allocatable :: solid_time          !! when the last point became solid [time]
       character(:), allocatable :: stability       !! whether it lasts; or empty
+      real(dp), allocatable :: leading(:, :)       !! as stability_record_type
       real(dp), allocatable :: load_factor         !! of a point of a branch
       !> Load factors of the folds so far; unallocated for none
       real(dp), allocatable, private :: folds(:)
@@ -95,6 +97,10 @@ contains
       self%load = record%load
       self%contacts = record%contacts
       self%stability = stability_words(record)
+      if (allocated(self%leading)) deallocate (self%leading)
+      if (allocated(record%stability)) then
+         if (allocated(record%stability%leading)) self%leading = record%stability%leading
+      end if
       if (allocated(record%cycle)) self%cycle = record%cycle
       if (allocated(self%solid_time)) deallocate (self%solid_time)
       if (allocated(record%solid_time)) self%solid_time = record%solid_time
@@ -171,6 +177,8 @@ contains
          if (interfaces > 0 .and. steps > 1) most_lines = most_lines + 1 + told*steps
          if (any(model%steps%cycle%steps > 0)) most_lines = most_lines + 1
          if (any(melts(model%materials))) most_lines = most_lines + 1
+         if (any(model%steps%stability_frequency > 0)) most_lines = most_lines + 2 + &
+            maxval(model%steps%stability_modes)/leading_in_line
          most_lines = most_lines + count([any(model%materials%law%strains(1) > 0), &
             any(model%materials%law%strains(2) > 0)])
          ! Some of a body's lines are wrapped.
@@ -220,6 +228,7 @@ contains
          self%solid_time, mark_of(reason_inside_step(model)), '-', ''))
       if (allocated(self%cycle)) call append(lines, self%cycle)
       if (self%stability /= '') call append(lines, self%stability)
+      if (allocated(self%leading)) call append(lines, leading_words(self%leading))
    end subroutine add_lines
 
    !> The largest inelastic strains where they are not among the maxima of bodies.

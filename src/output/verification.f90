@@ -3,11 +3,12 @@ module verification
    use, intrinsic :: ieee_arithmetic, only: ieee_is_nan
    use contact_points, only: contact_points_type
    use checked_values, only: is_estimable, values_asked_for, worst_of
-   use due_output, only: is_judged
+   use due_output, only: is_followed, is_judged
    use kinds, only: dp
    use model, only: model_type, verify_type
    use no_estimates, only: mark_of, no_reason, reason_inside_step
    use records, only: increment_record_type
+   use reached_levels, only: reached_level_type, exchange_levels
    use state_tables, only: reals, state_table_type, words
    use text, only: few_digits, percent, to_text
    implicit none
@@ -29,6 +30,8 @@ module verification
    !> All checks of a deck, in its order.
    type :: verifier_type
       type(outcome_type), allocatable :: outcomes(:)   !! one for each of model%verifications
+      !> Likewise: when values were reached
+      type(reached_level_type), allocatable, private :: levels(:)
    contains
       procedure :: start
       procedure :: judge
@@ -44,9 +47,11 @@ contains
       type(model_type), intent(in) :: model
       integer :: i
 
-      allocate(self%outcomes(size(model%verifications)))
+      allocate(self%outcomes(size(model%verifications)), self%levels(size(model%verifications)))
       do i = 1, size(self%outcomes)
          self%outcomes(i)%reason = 'the run ended before this time'
+         if (allocated(model%verifications(i)%level)) self%levels(i)%level = &
+            model%verifications(i)%level
       end do
    end subroutine start
 
@@ -62,9 +67,17 @@ contains
       integer :: i
 
       do i = 1, size(self%outcomes)
+         if (is_followed(model%verifications(i), record, model)) then
+            call self%levels(i)%follow(model%verifications(i), record, model, interfaces, &
+               point_node)
+         end if
          if (.not. is_judged(model%verifications(i), record, model)) cycle
-         call values_asked_for(model%verifications(i), record, model, interfaces, point_node, &
-            values, reason)
+         if (allocated(model%verifications(i)%level)) then
+            call self%levels(i)%times(values, reason)
+         else
+            call values_asked_for(model%verifications(i), record, model, interfaces, point_node, &
+               values, reason)
+         end if
          self%outcomes(i) = outcome_of(model%verifications(i), values, reason)
          self%outcomes(i)%time = record%time
          if (len(self%outcomes(i)%reason) > 0) cycle
@@ -88,6 +101,7 @@ contains
       real(dp) :: rows(7, size(self%outcomes))
       integer :: first, i
 
+      call exchange_levels(self%levels, table)
       reasons = ''
       do i = 1, size(self%outcomes)
          associate (outcome => self%outcomes(i))
@@ -139,7 +153,7 @@ contains
       type(outcome_type), intent(in) :: outcome
       character(:), allocatable :: words
 
-      words = check%address//': check failed: '//trim(check%quantity//' '//check%where)// &
+      words = check%address//': check failed: '//trim(check%title()//' '//check%where)// &
          ' at time '//to_text(outcome%time)//': '
       if (len(outcome%reason) > 0) then
          words = words//'expected '//to_text(check%value)//', but '//outcome%reason

@@ -17,7 +17,11 @@ module checked_values
    use text, only: read_integer, read_real, to_upper
    implicit none
    private
-   public :: is_estimable, is_on_interface, values_asked_for, worst_of
+   public :: is_estimable, is_on_interface, is_recovered, values_asked_for, worst_of
+
+   !> Quantities of nodes that are there without a recovery of stress and heat flux.
+   character(*), parameter :: own_of_nodes(7) = [character(5) :: 'U1', 'U2', 'NT', 'SOLID', &
+      'RF1', 'RF2', 'RFL']
 
 contains
 
@@ -30,7 +34,17 @@ contains
       is_estimable = .not. (quantity%is_integer .or. quantity%is_geometry .or. &
          any(quantity%unit == [character(4) :: '-', 'time', 'load']) .and. &
          all(quantity%kind /= [of_nodes, of_references]) .and. .not. quantity%is_estimated)
+      is_estimable = is_estimable .and. .not. allocated(check%level)
    end function is_estimable
+
+   !> Whether the value of a check is recovered from those of elements.
+   pure logical function is_recovered(check)
+      type(verify_type), intent(in) :: check
+      type(quantity_type) :: quantity
+
+      quantity = verifiable(find_quantity(verifiable, check%quantity))
+      is_recovered = quantity%kind == of_nodes .and. all(own_of_nodes /= quantity%name)
+   end function is_recovered
 
    !> The value that is farthest from what a check expects; NaN where one is.
    pure real(dp) function worst_of(check, values) result(worst)

@@ -5,7 +5,8 @@ module increment_quantities
    use quantity_types, only: needs_branch, needs_coupling, needs_creep, needs_dilatation, &
       needs_friction_heat, needs_heat, needs_laws, needs_mechanics, needs_melting, &
       needs_plasticity, needs_references, needs_sections, needs_stability, needs_storage, &
-      of_bodies, of_elements, of_history, of_passes, of_references, of_sections, quantity_type
+      of_bodies, of_elements, of_history, of_motions, of_passes, of_references, of_sections, &
+      quantity_type
    use field_recovery, only: error_record_type
    use records, only: increment_record_type, stability_record_type
    use solution_report, only: iteration_record_type
@@ -13,7 +14,7 @@ module increment_quantities
    implicit none
    private
    public :: increment_table, history_estimated, history_value, part_values, pass_value, &
-      stability_words
+      leading_words, stability_words
 
    type(quantity_type), parameter :: increment_table(*) = [ &
       quantity_type('time', of_history, 'time', &
@@ -74,6 +75,10 @@ module increment_quantities
       description='rate of the fastest one, of the slowest to decay where none grows'), &
       quantity_type('period', of_history, 'time', needs_stability, &
       description='period of its oscillation, 0 without one'), &
+      quantity_type('growth_rates', of_motions, '1/time', needs_stability, &
+      description='rates of the leading motions, the fastest first; a pair that oscillates once'), &
+      quantity_type('periods', of_motions, 'time', needs_stability, &
+      description='periods of their oscillations, 0 without one'), &
       quantity_type('load_factor', of_history, '-', needs_branch, label='load factor', &
       description='load factor of a point of a branch, which may fall'), &
       quantity_type('fold', of_history, '-', needs_branch, is_integer=.true., label='fold', &
@@ -252,12 +257,31 @@ contains
       if (found%period > 0.0_dp) words = words//', period '//few_digits(found%period, 3)
    end function motion_words
 
-   !> A quantity of the bodies, of the elements, of the pre-tension sections or of reference nodes.
+   !> Growth rates and periods of leading motions in words; empty where none is known.
+   pure function leading_words(leading) result(words)
+      !> (2, motions) as stability_record_type has them; unallocated for none
+      real(dp), allocatable, intent(in) :: leading(:, :)
+      character(:), allocatable :: words
+      integer :: i
+
+      words = ''
+      if (.not. allocated(leading)) return
+      do i = 1, size(leading, 2)
+         words = words//trim(merge(', ', ': ', i > 1))//' '//few_digits(leading(1, i), 4)
+         if (leading(2, i) > 0.0_dp) words = words//' (period '//few_digits(leading(2, i), 4)//')'
+      end do
+      words = trim(merge('growth rates of the leading modes', &
+         'growth rate of the leading mode  ', size(leading, 2) > 1))//words
+   end function leading_words
+
+   !> A quantity of the bodies, of the elements, of the pre-tension sections, of reference nodes or
+   !> of leading motions.
    pure function part_values(quantity, record) result(values)
       type(quantity_type), intent(in) :: quantity          !! one of those kinds
       type(increment_record_type), intent(in) :: record
       real(dp), allocatable :: values(:)                   !! one each, or none
       type(error_record_type) :: error
+      integer :: i, n
 
       if (quantity%name == 'stress_error') error = record%stress_error
       if (quantity%name == 'heat_flux_error') error = record%heat_flux_error
@@ -273,6 +297,16 @@ contains
       if (quantity%kind == of_references .and. allocated(record%along_z)) values = &
          record%along_z(findloc(['U3 ', 'UR1', 'UR2', 'RF3', 'RM1', 'RM2'], quantity%name(:3), &
          dim=1), :)
+      if (quantity%kind /= of_motions) return
+      values = spread(ieee_value(1.0_dp, ieee_quiet_nan), 1, quantity%values)
+      if (.not. allocated(record%stability)) return
+      if (allocated(record%stability%leading)) then
+         i = merge(1, 2, quantity%name == 'growth_rates')
+         associate (found => record%stability%leading)
+            n = min(size(values), size(found, 2))
+            values(:n) = found(i, :n)
+         end associate
+      end if
    end function part_values
 
    !> A quantity of a pass.

@@ -110,6 +110,8 @@ module records
       integer :: unstable_modes = 0                 !! motions that grow
       real(dp) :: growth_rate = 0.0_dp              !! of the fastest, negative: it decays [1/time]
       real(dp) :: period = 0.0_dp                   !! of its oscillation, 0 without one [time]
+      !> (2, motions) both of the fastest ones, the fastest first; unallocated where none was found
+      real(dp), allocatable :: leading(:, :)
       character(:), allocatable :: doubt            !! why it is uncertain; unallocated: it is not
    contains
       procedure :: add_doubt

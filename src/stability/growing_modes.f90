@@ -113,7 +113,8 @@ contains
          call projection%rates(rates, is_known)
       end if
       record%stability%unstable_modes = count(real(rates) > neutral_part*slowest)
-      call find_fastest(simulation, motion, response, rates, neutral_part*slowest, record)
+      call find_fastest(simulation, motion, response, rates, neutral_part*slowest, &
+         model%steps(record%step)%stability_modes, record)
       if (.not. is_known) call record%stability%add_doubt( &
          'the projected bodies have no sound eigenvalues')
       if (.not. bound < 1.0_dp) call record%stability%add_doubt('faster motions may grow, as '// &
@@ -184,19 +185,22 @@ contains
       end associate
    end function slowest_conduction
 
-   !> Finds it, and sees whether as many motions grow as among the projected ones.
-   subroutine find_fastest(simulation, motion, response, projected, neutral, record)
+   !> Finds it and those that follow, and sees whether as many motions grow as among the projected
+   !> ones.
+   subroutine find_fastest(simulation, motion, response, projected, neutral, wanted, record)
       type(simulation_type), intent(in) :: simulation        !! the run at its end
       type(linear_perturbation_type), intent(in) :: motion
       type(motion_response_type), intent(in) :: response     !! at a rate above it
       complex(dp), intent(in) :: projected(:)                !! rates of the projected bodies
       real(dp), intent(in) :: neutral                        !! a rate that is no growth [1/time]
-      type(increment_record_type), intent(inout) :: record   !! receives it
+      integer, intent(in) :: wanted                          !! motions that are told
+      type(increment_record_type), intent(inout) :: record   !! receives them
       type(arnoldi_type) :: modes
       type(lu_type) :: coupling
       complex(dp), allocatable :: rates(:)
       logical, allocatable :: is_sharp(:)
       logical :: singular
+      integer, allocatable :: leading(:)
       integer :: fastest, growing, i
 
       associate (n => size(response%answer, 1))
@@ -211,20 +215,32 @@ contains
          if (.not. modes%is_checked) cycle
          rates = rates_of(modes%value, response%sigma)
          is_sharp = modes%residual <= sharp*abs(modes%value)
-         if (.not. any(is_sharp)) cycle
-         fastest = maxloc(real(rates), mask=is_sharp, dim=1)
-         if (count(is_sharp .and. real(rates) > neutral) >= record%stability%unstable_modes .and. &
-            all(is_sharp .or. real(rates) <= min(0.0_dp, real(rates(fastest))))) exit
+         leading = fastest_of(rates, is_sharp, wanted)
+         if (size(leading) == 0) cycle
+         associate (last => rates(leading(size(leading))))
+            if (count(is_sharp .and. real(rates) > neutral) >= record%stability%unstable_modes &
+               .and. size(leading) == wanted .and. all(is_sharp .or. real(rates) <= &
+               min(0.0_dp, real(last)))) exit
+         end associate
       end do
-      fastest = maxloc(real(rates), mask=is_sharp, dim=1)
-      if (fastest == 0) then
+      leading = fastest_of(rates, is_sharp, wanted)
+      if (size(leading) == 0) then
          call record%stability%add_doubt('Arnoldi''s method finds no motion')
          return
       end if
+      fastest = leading(1)
       call take_motion(modes%eigenvector(fastest), rates(fastest), simulation, motion, record)
       growing = count(is_sharp .and. real(rates) > neutral)
       associate (found => record%stability)
          if (abs(rates(fastest)) <= neutral) found%growth_rate = 0.0_dp
+         ! Those behind one that is not sharp are not told: it may be faster.
+         leading = pack(leading, [(i == 1 .or. .not. any(real(rates) > real(rates(leading(i))) &
+            .and. .not. is_sharp), i=1, size(leading))])
+         found%leading = reshape([(found%growth_rate, found%period, i=1, size(leading))], &
+            [2, size(leading)])
+         do i = 2, size(leading)
+            found%leading(:, i) = [real(rates(leading(i))), period_of(rates(leading(i)))]
+         end do
          if (growing /= found%unstable_modes) then
             call found%add_doubt('the projected bodies have '//counted(found%unstable_modes, &
                'growing motion')//', Arnoldi''s method finds '//to_text(growing))
@@ -237,6 +253,31 @@ contains
          end if
       end associate
    end subroutine find_fastest
+
+   !> The fastest ones of sharp rates, the fastest first; of two that swing together one.
+   pure function fastest_of(rates, is_sharp, wanted) result(leading)
+      complex(dp), intent(in) :: rates(:)
+      logical, intent(in) :: is_sharp(:)
+      integer, intent(in) :: wanted            ! most of them
+      integer, allocatable :: leading(:)       ! indexes into rates
+      logical :: is_left(size(rates))
+      integer :: i
+
+      is_left = is_sharp .and. aimag(rates) >= 0.0_dp .and. real(rates) > -huge(1.0_dp)
+      leading = [integer ::]
+      do i = 1, min(wanted, count(is_left))
+         leading = [leading, maxloc(real(rates), mask=is_left, dim=1)]
+         is_left(leading(i)) = .false.
+      end do
+   end function fastest_of
+
+   !> Period of the oscillation of a rate; 0 without one.
+   pure real(dp) function period_of(rate) result(period)
+      complex(dp), intent(in) :: rate
+
+      period = 0.0_dp
+      if (abs(aimag(rate)) > nearly_real*abs(rate)) period = full_turn/abs(aimag(rate))
+   end function period_of
 
    !> Rates of eigenvalues; those that are none decay at once.
    pure function rates_of(values, sigma) result(rates)
@@ -263,7 +304,7 @@ contains
       associate (found => record%stability)
          found%is_known = .true.
          found%growth_rate = real(rate)
-         if (abs(aimag(rate)) > nearly_real*abs(rate)) found%period = full_turn/abs(aimag(rate))
+         found%period = period_of(rate)
       end associate
       associate (k => maxloc(hypot(vector(:, 1), vector(:, 2)), dim=1))
          largest = cmplx(vector(k, 1), vector(k, 2), dp)

@@ -1,13 +1,15 @@
 !> Output due at an increment: fields of the result file, tables of the listing, verdicts.
 !> Stress, heat flux and their errors are recovered for these alone.
 module due_output
+   use checked_values, only: is_recovered
    use kinds, only: dp
    use model, only: model_type, verify_type
    use records, only: increment_record_type
    use time_points, only: time_points_type
    implicit none
    private
-   public :: ends_run, fields_are_due, is_judged, is_nth, met_within, needs_recovery, table_is_due
+   public :: ends_run, fields_are_due, is_followed, is_judged, is_nth, met_within, &
+      needs_recovery, table_is_due
 
    real(dp), parameter :: landing = 1.0e-6_dp   !! of an increment: how near a time is met
 
@@ -81,6 +83,17 @@ contains
       end if
    end function is_judged
 
+   !> Whether a check of when a value is reached looks at an increment.
+   pure logical function is_followed(check, record, model)
+      type(verify_type), intent(in) :: check
+      type(increment_record_type), intent(in) :: record
+      type(model_type), intent(in) :: model
+
+      is_followed = allocated(check%level)
+      if (is_followed .and. .not. check%at_last) is_followed = record%time <= check%when + &
+         met_within(check%when, model%steps(record%step)%first_increment)
+   end function is_followed
+
    !> Whether anything asks for stress, heat flux or their errors. The last increment of a step
    !> always does: the listing tells its errors.
    pure logical function needs_recovery(record, model)
@@ -91,7 +104,10 @@ contains
       needs_recovery = fields_are_due(record, model)
       do i = 1, size(model%verifications)
          if (needs_recovery) return
-         needs_recovery = is_judged(model%verifications(i), record, model)
+         associate (check => model%verifications(i))
+            needs_recovery = is_judged(check, record, model)
+            if (is_followed(check, record, model)) needs_recovery = is_recovered(check)
+         end associate
       end do
    end function needs_recovery
 

@@ -3,6 +3,7 @@ tests/accuracy/converged.csv, from meshes far finer than any here."""
 
 import csv
 import fcntl
+import json
 import re
 import resource
 import shutil
@@ -19,7 +20,7 @@ from blocks import without_unused_surfaces, write
 from changes import note_changes
 from deck_runs import (COUPLED, CYLINDER, DECKS, HERTZ, INPUT, PATIENCE, PROGRAM, copy_deck, of_release,
                        run, solve)
-from physics import material, mesh
+from physics import material, mesh, nodes_of
 
 QUANTITIES = "normal_force", "heat_rate", "peak_pressure", "edge_contact"
 with (DECKS.parent / "accuracy" / "converged.csv").open(newline="") as told:
@@ -369,6 +370,57 @@ def test_the_other_targets_are_met_beside_a_pressure_without_limit(tmp_path, col
     assert peak[-1, 1] > 1.05 * peak[0, 1]
 
 
+def advice_of(process, deck):
+    """Return what limits a request, as the last lines of the run, the listing and --json have it."""
+    lines = process.stdout.splitlines()
+    last = max(k for k, line in enumerate(lines) if re.match(r" +\d+ +\d+\.\d\d ", line))
+    told = [line.strip() for line in lines[last + 1:] if " limits it: " in line]
+    assert lines[last + 1:last + 1 + len(told)] == [f"     {words}" for words in told]
+    listing = " ".join(deck.with_suffix(".lst").read_text().split())
+    assert all(words in listing for words in told)
+    return told
+
+
+@pytest.mark.parametrize(("targets", "instead"), [
+    ("95%", "force=95%"), ("pressure=1%", "force=5%")])
+def test_the_corner_that_limits_a_pressure_is_named(tmp_path, targets, instead):
+    """Node 9 is at (1, 1), the corner of the punch; the node of the body opposite is at (1.125, 1)."""
+    deck = punch(tmp_path, "A.BOTTOM, B.TOP", 8)
+    process = run("run", deck, "--out", tmp_path, "--accuracy", targets)
+    assert process.returncode == 4
+    told, = advice_of(process, deck)
+    place = nodes_of(deck.read_text().splitlines())
+    node, other = map(int, re.search(r"where nodes (\d+) and (\d+) meet;", told).groups())
+    assert place[node] == (1.0, 1.0) and place[other] == (1.125, 1.0)
+    assert told.startswith("P peak pressure limits it: ") and told.endswith(f"--accuracy {instead}")
+    process = run("run", deck, "--out", tmp_path, "--accuracy", targets, "--json")
+    assert json.loads(process.stdout)["accuracy"]["lines"][-1] == told
+
+
+def test_rounds_that_are_missing_are_as_many_as_are_told(tmp_path):
+    """The order is that of the rounds in the file, and the deck with as many more reaches its target."""
+    cards = "edge_contact, 0.001", "*OPTIONS, ERRORS=LAST"
+    deck = copy_deck(HERTZ, tmp_path / "two.inp", ["*ACCURACY, ROUNDS=2", *cards])
+    process = run("run", deck, "--out", tmp_path)
+    assert process.returncode == 4, process.stderr
+    told, = advice_of(process, deck)
+    order, more, seconds, rounds, within = re.fullmatch(
+        r"FACE edge of contact limits it: its uncertainty falls as unknowns to the power -(\S+); about "
+        r"(\d+) more rounds? \((\S+) CPU seconds\) would do: \*ACCURACY, ROUNDS=(\d+); "
+        r"this mesh reaches --accuracy edge=(\S+)%", told).groups()
+    costs, known, _ = rounds_of(tmp_path / "two.vtkhdf")
+    slope = np.diff(np.log(known["edge_contact"][:, 2])) / np.diff(np.log(costs["unknowns"]))
+    assert float(order) == pytest.approx(-slope[0], rel=0.05)
+    assert int(rounds) == 2 + int(more) and float(seconds) > costs["cpu_seconds"][1]
+    part = 0.001 * known["edge_contact"][1, 2] / known["edge_contact"][1, 3]
+    assert part <= float(within) / 100 <= 2.5 * part
+    deck = copy_deck(HERTZ, tmp_path / "more.inp", [f"*ACCURACY, ROUNDS={rounds}", *cards])
+    _, known, reached = rounds_of(solve(deck))
+    assert reached and len(known["edge_contact"]) in (int(rounds), int(rounds) - 1)
+    process = run("run", deck, "--out", tmp_path)
+    assert " limits it: " not in process.stdout
+
+
 def test_pressures_of_linear_elements_stay_alike_from_round_to_round(tmp_path):
     """A ring on a shaft as long: pressures fall to the free end, smoothly. Where sides of two lengths
     met inside of the contact, they would alternate by 4 %."""
@@ -396,6 +448,7 @@ def test_a_request_that_stops_at_an_end_of_the_face_says_so(tmp_path):
     assert process.returncode == 4, process.stderr
     for words in (process.stdout, " ".join(deck.with_suffix(".lst").read_text().split())):
         assert "; the peak is at an end of the face, where the pressure may grow without limit" in words
+        assert "its uncertainty did not fall in the last rounds, and its peak is at an end of the face" in words
 
 
 def test_a_model_with_equations_is_judged_by_its_uncertainties(tmp_path):

@@ -89,7 +89,7 @@ def test_number_of_growing_modes_is_that_of_dense_eigenvalues(tmp_path):
         expected[i] = rates, solution
     process = run("run", "--quiet", *(f"{i}.inp" for i in expected), folder=tmp_path)
     assert process.returncode == 0, process.stderr
-    counts = []
+    counts, told = [], []
     for i, (rates, solution) in expected.items():
         with h5py.File(tmp_path / f"{i}.vtkhdf") as file:
             assert file["contact/FACE/conductance"][-1] == pytest.approx(solution.conductance)
@@ -100,10 +100,20 @@ def test_number_of_growing_modes_is_that_of_dense_eigenvalues(tmp_path):
         assert found["growth_rate"] == pytest.approx(rates[0].real, rel=0.03), (i, rates[:3])
         assert found["period"] == pytest.approx(2 * np.pi / abs(rates[0].imag) if rates[0].imag
                                                 else 0.0, rel=0.03)
+        # A pair that oscillates is one of the leading motions; those that decay faster are coarser.
+        leading = rates[rates.imag >= 0.0][:3]
+        known = np.isfinite(found["growth_rates"][0])
+        assert found["growth_rates"][0, 0] == found["growth_rate"][0]
+        np.testing.assert_allclose(found["growth_rates"][0, known], leading.real[known], rtol=0.1,
+                                   atol=0.02 * abs(rates[0]), err_msg=f"{i}")
+        np.testing.assert_allclose(found["periods"][0, known], np.divide(
+            2 * np.pi, leading.imag, out=np.zeros(3), where=leading.imag > 0.0)[known], rtol=0.1)
         counts.append((growing, rates[0].imag != 0.0))
+        told.append(np.count_nonzero(known))
     # The rods show all kinds of motions.
     for kind in (0, False), (0, True), (1, False), (2, True):
         assert counts.count(kind) > 5, kind
+    assert told.count(3) > 0.95 * len(told)
 
 
 MIDDLE = rods.Rods((0.1, 0.1), (20.0, 20.0), (0.0, 12e-6), (2e11, 2e11), (500.0, 0.0), 1.2e-4)
@@ -138,6 +148,30 @@ def test_rate_is_the_same_with_any_solver_mesh_and_pairing(cards, pairing, tmp_p
     assert found["growth_rate"] == pytest.approx(rate, rel=1e-4)
     assert found["unstable_modes"] == 1
     assert "unstable: 1 mode grows, doubling in 270\n" in printed
+
+
+@pytest.mark.changes("STABILITY, MODES")
+@pytest.mark.parametrize("branch", [0, 1, 2])
+def test_leading_modes_are_those_of_dense_eigenvalues(branch, tmp_path):
+    """As many as the card asks for, the stable ones too, in listing, summary and result file."""
+    decks = [middle(branch=branch, elements=(24, 24), stability=f"*STABILITY{modes}")
+             for modes in ("", ", MODES=6", ", MODES=1")]
+    note_changes(*decks[1:])
+    rates = rod_modes.rates(MIDDLE, (3.6e6, 3.6e6), BRANCHES[branch])
+    rates = rates[rates.imag >= 0.0]
+    for cards, count in zip(decks, (3, 6, 1), strict=True):
+        result, printed = solved(tmp_path, cards)
+        found = stability_of(result)
+        assert found["growth_rates"].shape == found["periods"].shape == (1, count)
+        np.testing.assert_allclose(found["growth_rates"][0], rates[:count].real, rtol=2e-4)
+        np.testing.assert_allclose(found["periods"][0], [2 * np.pi / s.imag if s.imag else 0.0
+                                                         for s in rates[:count]], rtol=2e-4)
+        assert found["growth_rate"] == found["growth_rates"][:, 0]
+        for words in (printed, result.with_suffix(".lst").read_text()):
+            words = " ".join(words.split())
+            said = re.search("growth rates? of the leading modes?: ((?:[^ ,]+(?:, )?)+)", words)[1]
+            np.testing.assert_allclose([float(word) for word in said.split(", ")[:count]],
+                                       rates[:count].real, rtol=1e-3)
 
 
 def test_mode_is_that_of_the_rods(tmp_path):

@@ -304,6 +304,22 @@ module hdf5
          integer(hid_t), intent(in), optional :: lapl_id
       end subroutine h5lexists_f
 
+      subroutine h5gn_members_f(loc_id, name, nmembers, hdferr)
+         import :: hid_t
+         integer(hid_t), intent(in) :: loc_id
+         character(*), intent(in) :: name
+         integer, intent(out) :: nmembers, hdferr
+      end subroutine h5gn_members_f
+
+      subroutine h5gget_obj_info_idx_f(loc_id, name, idx, obj_name, obj_type, hdferr)
+         import :: hid_t
+         integer(hid_t), intent(in) :: loc_id
+         character(*), intent(in) :: name
+         integer, intent(in) :: idx
+         character(1024), intent(out) :: obj_name
+         integer, intent(out) :: obj_type, hdferr
+      end subroutine h5gget_obj_info_idx_f
+
       subroutine h5ldelete_f(loc_id, name, hdferr, lapl_id)
          import :: hid_t
          integer(hid_t), intent(in) :: loc_id

@@ -5,7 +5,7 @@ import sys
 from contextlib import ExitStack
 from itertools import chain
 
-from . import accuracy, branch, convergence, courses, fields, mesh, profiles, style, trade, zones
+from . import accuracy, branch, convergence, courses, fields, history, mesh, profiles, style, trade, zones
 from .deck_changes import changed
 from .errors import UserError, program
 from .result import FIELD_SOURCES, Result
@@ -52,6 +52,7 @@ def parser():
         "zones": ("open, slip and stick against the load", WITH_ZONES),
         "fields": ("temperature and stress on the deformed mesh", None),
         "courses": ("pressure, gap, temperatures and heat over time", None),
+        "history": ("nodes and elements of *NODE PRINT and *EL PRINT over time, or over the load", None),
         "branch": ("a quantity over the load factor of *CONTINUATION, unstable parts dashed", None),
         "accuracy": ("uncertainties of a requested accuracy against the cost of its rounds", None),
     }
@@ -76,6 +77,13 @@ def parser():
     )
     add_fields(added["fields"])
     add_name(added["courses"])
+    added["history"].add_argument(
+        "--set", metavar="NAME", help="node or element set (default: all, a picture each)"
+    )
+    added["history"].add_argument(
+        "--quantity", action="append", metavar="QUANTITY ...",
+        help="quantity, or several, such as temperature or displacement_x (default: all)",
+    )
     add_name(added["branch"])
     added["branch"].add_argument(
         "--quantity",
@@ -231,6 +239,7 @@ def run(arguments):
         of_several = {"convergence": convergence, "zones": zones}
         of_one = {"mesh": mesh, "profiles": profiles, "fields": fields}
         of_one |= {"accuracy": accuracy, "courses": courses, "branch": branch}
+        of_one |= {"history": history}
         if options.picture in of_several:
             written = of_several[options.picture].draw(results, options)
         else:

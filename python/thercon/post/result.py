@@ -265,7 +265,9 @@ class Result:
     def history(self):
         """Datasets of /history by name: one value for each accepted increment."""
         group = self.file["history"]
-        found = {key: numbers(group, key) for key, item in group.items() if not isinstance(item, h5py.Group)}
+        # Its groups are the histories of sets.
+        found = {key: numbers(group, key) for key in group
+                 if not isinstance(group[key], h5py.Group)}
         for key in ("time", "load"):
             found[key] = numbers(group, key, like=(None,), finite=True)
         for key, values in found.items():

@@ -198,6 +198,7 @@ contains
             'wear of its increment; leave one of them out')
          step%stability_frequency = huge(1)
          call take_parameter(card, 'FREQUENCY', deck, step%stability_frequency, '>=1')
+         call take_parameter(card, 'MODES', deck, step%stability_modes, '>=1')
       case ('CONTACT PRINT')
          call read_frequency(card, deck, step%contact_print_frequency, step%contact_print_points)
       case default   ! of the model, or not known

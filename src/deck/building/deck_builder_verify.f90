@@ -18,7 +18,7 @@ module deck_builder_verify
       of_history, of_interface, of_nodes, of_references, of_sections, quantity_type
    use spelling, only: known_choices, nearest_known
    use steps, only: analysis_static
-   use text, only: read_real, string_type, to_text, to_upper
+   use text, only: read_real, real_fault, string_type, to_text, to_upper
    implicit none
    private
    public :: build_verifications, check_heat_quantities, build_accuracy
@@ -52,9 +52,11 @@ contains
                   check%where = data%text(2)
                   fields = [data%place(1), data%place(2)]
                   check%columns = fields%column
-                  call read_quantity(data, deck%verifiable, '', deck, quantity)
+                  call read_quantity(data, deck%verifiable, '', deck, quantity, check%level)
                   if (quantity > 0) then
                      check%quantity = trim(deck%verifiable(quantity)%name)
+                     if (allocated(check%level)) call check_level(data, &
+                        deck%verifiable(quantity), deck)
                      call check_where(data, deck%verifiable(quantity)%kind, deck, check)
                   end if
                   if (deck%analyses_sound) call read_when(data, deck, check)
@@ -105,13 +107,15 @@ contains
       call deck%error(data%place(i), ''''//data%text(i)//''' is neither REL nor ABS')
    end function is_relative
 
-   !> The first field: index into known quantities, 0 after an error.
-   subroutine read_quantity(data, known, refusal, deck, quantity)
+   !> The first field: index into known quantities, 0 after an error; of checks it may say which
+   !> value the quantity reaches.
+   subroutine read_quantity(data, known, refusal, deck, quantity, level)
       type(data_card_type), intent(in) :: data
       type(quantity_type), intent(in) :: known(:)
       character(*), intent(in) :: refusal   ! of others than these few; empty where they are many
       type(deck_type), intent(inout) :: deck
       integer, intent(out) :: quantity
+      real(dp), allocatable, intent(out), optional :: level
       character(:), allocatable :: name, hint
       type(string_type) :: names(size(known))
       logical :: valid
@@ -120,6 +124,8 @@ contains
       valid = .true.
       quantity = 0
       call read_field(data, 1, 'quantity', deck, name, valid)
+      if (.not. valid) return
+      if (present(level)) call split_level(data, deck, name, level, valid)
       if (.not. valid) return
       quantity = find_quantity(known, name)
       if (quantity > 0) return
@@ -134,6 +140,50 @@ contains
       if (len(hint) == 0) hint = '; docs/deck.md lists those that are known'
       call deck%error(data%place(1), 'unknown quantity '//name//hint)
    end subroutine read_quantity
+
+   !> Splits NT reaches 500. into the quantity and the value that it reaches.
+   subroutine split_level(data, deck, name, level, valid)
+      type(data_card_type), intent(in) :: data
+      type(deck_type), intent(inout) :: deck
+      character(:), allocatable, intent(inout) :: name
+      real(dp), allocatable, intent(inout) :: level
+      logical, intent(inout) :: valid                   ! becomes false after an error
+      character(*), parameter :: word = ' REACHES '
+      type(place_type) :: place
+      character(:), allocatable :: number
+      integer :: at, first
+
+      at = index(to_upper(name)//' ', word)
+      if (at == 0) return
+      first = min(at + len(word), len(name) + 1)
+      first = first + max(verify(name(first:), ' '), 1) - 1
+      number = trim(name(first:))
+      allocate (level)
+      call read_real(number, level, valid)
+      place = data%place(1)
+      if (.not. valid .and. number == '') then
+         call deck%error(place, ''''//name//''': there is no value behind reaches, as in NT '// &
+            'reaches 500.')
+      else if (.not. valid) then
+         place%column = place%column + first - 1
+         call deck%error(place, ''''//number//''' '//real_fault(number))
+      end if
+      name = trim(name(:at))
+   end subroutine split_level
+
+   !> Only a single value that changes can reach another one.
+   subroutine check_level(data, quantity, deck)
+      type(data_card_type), intent(in) :: data
+      type(quantity_type), intent(in) :: quantity
+      type(deck_type), intent(inout) :: deck
+
+      if (quantity%is_geometry) then
+         call deck%error(data%place(1), trim(quantity%name)//' does not change: it reaches nothing')
+      else if (quantity%values > 1) then
+         call deck%error(data%place(1), trim(quantity%name)//' has several values: one of '// &
+            'them, such as edge_contact, can reach another')
+      end if
+   end subroutine check_level
 
    !> Checks where a quantity is judged; the only interface of a deck need not be named.
    subroutine check_where(data, kind, deck, check)

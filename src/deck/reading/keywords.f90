@@ -157,7 +157,7 @@ module keywords
       keyword_type('VISCO', in_step, 0, 1, stabilization//'DIRECT?/~SOLVER=/CETOL=/'// &
          'LOCAL ERROR=/STRAIN LIMIT='), &
       keyword_type('NO ANALYSIS', in_step, 0, 0, ''), &
-      keyword_type('STABILITY', in_step, 0, 0, 'FREQUENCY='), &
+      keyword_type('STABILITY', in_step, 0, 0, 'FREQUENCY=/MODES='), &
       keyword_type('TIME POINTS', in_both, 1, many, 'NAME=/TIME=/GENERATE'), &
       keyword_type('HEAT TRANSFER', in_step, 0, 1, &
          'STEADY STATE/DIRECT?/~SOLVER=/DELTMX=/LOCAL ERROR=/~END='), &

@@ -12,6 +12,7 @@ from ..cells import CORNERS
 from ..fields import TITLES, USUAL, apart_words, touches_after_a_gap
 from ..result import CELL_FIELDS, FIELD_SOURCES, NOISE, UNJUDGED, words_of
 from ..style import matplotlib
+from .sets import of_sets
 
 FIELD_NUMBERS = 1_400_000  # numbers of all fields together: at most 3.7 MB of text
 FINE = 20_000  # elements: nodes on sides cannot be seen
@@ -29,7 +30,7 @@ def page_data(result):
         "load": loads(result),
         "units": {key: plain(unit) for key, unit in result.units.names.items()},
         "contacts": [contact_data(result, contact) for contact in contacts_of(result)],
-        "history": histories(result),
+        "history": [*histories(result), *of_sets(result, listed)],
         "branch": branch_data(result),
         "fields": fields_data(result),
         "colours": {name: shades(name) for name in COLOURS},

@@ -268,6 +268,10 @@ function branchLines(y) {
    lines.push({x: [factor[row]], y: [y[row]], colour: INK, mark: true});
    return lines;
 }
+// Curves of the nodes or points of a set, at the increments at which it was printed.
+const SERIES = [INK, BLUE, VERMILION, '#009e73', '#e69f00', '#56b4e9'];
+const setLines = ({at, curves}, along) => curves.map(({name, values}, n) => ({name, colour: SERIES[n],
+   x: at.map(k => along[k]), y: values.map(v => v === null ? NaN : v), mark: at.length <= 60}));
 function drawHistories() {
    const along = data.branch ? data.branch.factor : abscissa;
    const low = Math.min(...along), high = Math.max(...along), room = 0.03 * (high - low) || 0.5;
@@ -275,12 +279,12 @@ function drawHistories() {
    if (!box.childElementCount)
       put(box, html`${data.history.map((_, k) => html`<figure id="history-${k}"></figure>`)}`);
    data.history.forEach((each, k) => {
-      const y = each.values.map(v => v === null ? NaN : v);
+      const y = each.values.map(v => v === null ? NaN : v), sets = each.curves ? setLines(each, along) : null;
       chart($(`history-${k}`), {
          width: 360, height: 200, title: `${each.label} over the load`,
          xLabel: data.branch ? 'Load factor' : data.load.axis, xRange: [low - room, high + room],
-         yLabel: each.unit, yRange: rangeOf(y, true), uprights: [along[row]],
-         lines: data.branch ? branchLines(y) : [{x: abscissa, y, off: each.uncertainty, colour: BLUE, mark: count <= 60}],
+         yLabel: each.unit, yRange: rangeOf(sets ? sets.flatMap(line => line.y) : y, true), uprights: [along[row]],
+         lines: sets || (data.branch ? branchLines(y) : [{x: abscissa, y, off: each.uncertainty, colour: BLUE, mark: count <= 60}]),
          caption: html`${each.label}: <b>${show(y[row])}</b>${within(each, row)} ${each.unit}`,
       });
    });

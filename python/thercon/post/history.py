@@ -1,0 +1,105 @@
+"""Histories of sets of nodes and elements over time or load."""
+
+import numpy as np
+
+from . import style
+from .errors import UserError, nearest_name
+from .set_histories import chosen, label
+from .style import plt
+
+MOST_CURVES = 6  # of one panel; more are drawn as their range
+OF_SEVERAL = "Of {}: lines are means, bands reach from the smallest to the largest value"
+
+
+def draw(result, options):
+    """Draw the history of every set asked for; return the files written."""
+    found = chosen(result, options.set)
+    kinds = {}
+    for each in found:
+        kinds.setdefault(each.name, set()).add(each.kind)
+    pictures = [(each, quantities(result, each, found, options.quantity)) for each in found]
+    written = []
+    for each, keys in pictures:
+        if not keys:
+            continue
+        parts = [each.name] if len(found) > 1 or options.set else []
+        parts += [each.kind] if len(kinds[each.name]) > 1 else []
+        name = style.file_name(result, "history", *parts, *(options.quantity or []))
+        written += style.write(picture(result, each, keys), table(result, each, keys), options, name)
+    return written
+
+
+def quantities(result, history, found, wanted):
+    """Return the quantities of a set that are drawn: those asked for that it has, all without any."""
+    if not wanted:
+        return list(history.values)
+    known = list(dict.fromkeys(key for each in found for key in each.values))
+    for key in wanted:
+        if key not in known:
+            raise UserError(f"{result.path}: has no history of '{key}'{nearest_name(key, known)}: "
+                            f"there are {', '.join(known)}")
+    return [key for key in dict.fromkeys(wanted) if key in history.values]
+
+
+def abscissa(result, history):
+    """Return name and values of the abscissa: time where heat is stored or the load turns, else the
+    load."""
+    load = result.history["load"][history.increment - 1]
+    rises = np.all(np.diff(load) > 0.0) or np.all(np.diff(load) < 0.0)
+    if "heat_stored" in result.history or not rises:
+        return "Time", history.time
+    return result.units.load_label(result.load_label), load
+
+
+def picture(result, history, keys):
+    """Return the figure of a set: a panel for each quantity."""
+    columns = min(2, len(keys))
+    rows = -(-len(keys) // columns)
+    figure, grid = plt.subplots(
+        rows, columns, sharex=True, layout="constrained", squeeze=False,
+        figsize=(style.DOUBLE_COLUMN * (0.5 if columns == 2 else 0.62) * columns, 0.4 + 2.1 * rows))
+    words, at = abscissa(result, history)
+    ranges = False
+    for number, (axes, key) in enumerate(zip(grid.flat, keys)):
+        ranges |= panel(axes, at, history, key)
+        unit = f" ({history.units[key]})" if history.units[key] else ""
+        axes.set_ylabel(f"{label(key)}{unit}")
+        style.panel_title(axes, "", chr(ord("a") + number) if number < 26 else "")
+        if number >= len(keys) - columns:
+            axes.set_xlabel(words)
+            axes.tick_params(labelbottom=True)
+    for axes in grid.flat[len(keys):]:
+        axes.set_visible(False)
+    note = f"{history.kind.capitalize()} of {style.plain(history.name)}"
+    members = "the nodes" if history.kind == "nodes" else "the integration points"
+    figure.supxlabel(f"{note}\n{OF_SEVERAL.format(members)}" if ranges else note, fontsize=8.5)
+    return figure
+
+
+def panel(axes, at, history, key):
+    """Draw one quantity; return whether the members are too many for a curve each."""
+    curves = history.curves(key)
+    marks = {"marker": "o", "ms": 2.4, "mfc": "white"} if len(at) <= 30 else {}
+    if len(curves) > MOST_CURVES:
+        values = history.values[key]
+        known = np.isfinite(values).any(axis=1)
+        axes.fill_between(at[known], np.nanmin(values[known], axis=1),
+                          np.nanmax(values[known], axis=1), color=style.BLACK, alpha=0.15, linewidth=0)
+        axes.plot(at[known], np.nanmean(values[known], axis=1), color=style.BLACK, **marks)
+        return True
+    for number, (words, values) in enumerate(curves):
+        known = np.isfinite(values)
+        axes.plot(at[known], values[known], color=style.SERIES[number], label=words or None, **marks)
+    if len(curves) > 1:
+        axes.legend(loc="best", handlelength=1.8)
+    return False
+
+
+def table(result, history, keys):
+    """Return what is drawn as columns, one for each quantity and member."""
+    columns = {"increment": history.increment, "time": history.time,
+               "load": result.history["load"][history.increment - 1]}
+    for key in keys:
+        for words, values in history.curves(key):
+            columns[f"{key}_{words.split()[-1]}" if words else key] = values
+    return columns

@@ -1,0 +1,99 @@
+"""Histories of sets: what *NODE PRINT and *EL PRINT keep in the result file, /history/nodes and
+/history/elements."""
+
+import re
+from dataclasses import dataclass
+
+import h5py
+import numpy as np
+
+from .checked_file import need, numbers
+from .errors import UserError, nearest_name
+from .result import text, words_of
+
+KINDS = {"nodes": "node", "elements": "element"}
+OF_ROWS = ("increment", "time")
+
+
+@dataclass
+class SetHistory:
+    """One set: a row for each increment at which it was printed."""
+
+    kind: str  # nodes or elements
+    name: str
+    increment: np.ndarray  # (rows), from 1
+    time: np.ndarray  # (rows)
+    members: list  # numbers of the nodes, as text; of points "element.point"
+    values: dict  # quantity -> (rows, members), of a total (rows)
+    units: dict  # quantity -> unit; empty where the deck names none
+
+    @property
+    def member_word(self):
+        """What one of the members is."""
+        return "node" if self.kind == "nodes" else "point"
+
+    def curves(self, quantity):
+        """Return [(words, values)] of a quantity: one for each member, or that of a total."""
+        values = self.values[quantity]
+        if values.ndim == 1:
+            return [("", values)]
+        return [(f"{self.member_word} {member}", values[:, k])
+                for k, member in enumerate(self.members)]
+
+
+def set_histories(result):
+    """Return the histories of all sets of a result, those of nodes first."""
+    found = []
+    for kind, word in KINDS.items():
+        groups = result.file.get(f"history/{kind}", {})
+        for name in groups:
+            need(result.file["history"], isinstance(groups[name], h5py.Group),
+                 f"{kind}/{name} is no group")
+            found.append(read_set(groups[name], kind, word, text(name)))
+    return found
+
+
+def read_set(group, kind, word, name):
+    """Return the history of one set."""
+    rows = len(numbers(group, "time", like=(None,), finite=True))
+    labels = [f"{n}" for n in numbers(group, word, like=(None,))]
+    known = {word, *OF_ROWS}
+    if kind == "elements":
+        known.add("point")
+        labels = [f"{label}.{p}" for label, p in zip(
+            labels, numbers(group, "point", like=(len(labels),)))]
+    values, units = {}, {}
+    for key in group:
+        if key in known:
+            continue
+        values[key] = numbers(group, key)
+        fits = values[key].shape in ((rows,), (rows, len(labels)))
+        need(group, fits, f"{key} has not one row for each increment")
+        unit = text(group[key].attrs.get("unit", ""))
+        is_named = unit != "-" and not re.search("length|stress|power|temperature", unit)
+        units[key] = unit.replace("^2", "\N{SUPERSCRIPT TWO}") if is_named else ""
+    increment, time = (numbers(group, key, like=(rows,)) for key in OF_ROWS)
+    need(group, np.all(increment > 0), "increment has values that are no counts from 1")
+    return SetHistory(kind, name, increment, time, labels, values, units)
+
+
+def chosen(result, name):
+    """Return the sets that a name means in any case, all without one."""
+    found = [each for each in set_histories(result) if len(each.time) and each.values]
+    if not found:
+        raise UserError(f"{result.path}: holds no histories: *NODE PRINT and *EL PRINT of the deck "
+                        "say of which sets it keeps them")
+    if name is None:
+        return found
+    meant = [each for each in found if each.name.lower() == name.lower()]
+    if not meant:
+        names = list(dict.fromkeys(each.name for each in found))
+        raise UserError(f"{result.path}: has no history of a set '{name}'"
+                        f"{nearest_name(name, names)}: there are {', '.join(names)}")
+    return meant
+
+
+def label(quantity):
+    """Return a quantity in words."""
+    words = words_of(quantity)
+    return words[:1].upper() + words[1:]

@@ -1,0 +1,107 @@
+"""*VERIFY of the time at which a value reaches another one: linear courses, whose times are known."""
+
+import json
+
+import h5py
+import pytest
+from blocks import write
+from deck_runs import run
+from physics import material, mesh, nodes_of
+from test_prints import BLOCK, BODY, CONDUCTIVITY, HELD, POISSON, YOUNG, static
+from test_restart import go_on
+
+START, HOT = 20.0, 120.0   # at 0 and 0.4; START again at 1
+WARM = [*BODY, "*INITIAL CONDITIONS, TYPE=TEMPERATURE", f"BLOCK, {START!r}",
+        "*AMPLITUDE, NAME=UP, VALUE=RELATIVE", f"0., {START / HOT!r}, 0.4, 1., 1., {START / HOT!r}",
+        "*STEP", "*HEAT TRANSFER, STEADY STATE", "0.1, 1.", "*BOUNDARY", f"BLOCK.BOTTOM, 11, 11, {START!r}",
+        "*BOUNDARY, AMPLITUDE=UP", f"BLOCK.TOP, 11, 11, {HOT!r}", "*END STEP"]
+DOWN = (1 - POISSON**2) / YOUNG
+
+
+def pressed(pressure=6.0, times="0.2, 1."):
+    """Return a block under a pressure that ramps."""
+    return [*BODY, *static(*HELD, "*DLOAD", f"BLOCK, P3, {pressure!r}", "*NODE FILE, FREQUENCY=0",
+                           times=times)]
+
+
+def judged(folder, cards, *checks, status=0):
+    """Solve cards with checks; return the checks of --json and what was said."""
+    deck = write(folder / "deck.inp", cards, ["*VERIFY, KIND=ANALYTIC, SOURCE=\"linear\"", *checks])
+    process = run("run", deck, "--json", "--out", folder)
+    assert process.returncode == status, process.stderr
+    return json.loads(process.stdout)["checks"], process.stderr
+
+
+@pytest.mark.parametrize(("cards", "check"), [
+    (WARM, "NT reaches 70., BLOCK.TOP, LAST, 0.2"),
+    (WARM, "NT reaches 45., BLOCK.TOP, LAST, 0.1"),       # the end of an increment
+    (WARM, "nt  Reaches  3.25E1, MAX, LAST, 0.05"),       # in the first one, from the initial state
+    (WARM, "NT reaches 70., BLOCK.TOP, 0.3, 0.2"),
+    (WARM, "RFL reaches -250., 1, LAST, 0.1"),
+    (pressed(), f"U2 reaches {-3.0 * DOWN!r}, BLOCK.TOP, LAST, 0.5"),
+    (pressed(), "S22 reaches -3., BLOCK, LAST, 0.5"),     # fields are written at the end alone
+    (pressed(), "load reaches 0.7, , LAST, 0.7"),
+], ids=lambda value: value if isinstance(value, str) else "")
+def test_times_of_linear_courses_pass_and_others_fail(tmp_path, cards, check):
+    if "RFL" in check:   # what enters at a corner of the bottom: a sixth of half of an element
+        check = f"RFL reaches {-CONDUCTIVITY * 25.0 * 0.5 / 6!r}, 1, LAST, 0.1"
+    found, _ = judged(tmp_path, cards, f"{check}, 1.E-9")
+    assert found[0]["passed"] and "uncertainty" not in found[0]
+    found, said = judged(tmp_path, cards, f"{check}01, 1.E-9", status=4)
+    assert not found[0]["passed"] and "expected " in said
+
+
+def test_a_check_has_its_words_and_its_time(tmp_path):
+    (found,), _ = judged(tmp_path, WARM, "NT reaches 70., BLOCK.TOP, LAST, 0.2, 1.E-9")
+    assert found["quantity"] == "NT reaches 70" and found["where"] == "BLOCK.TOP"
+    assert found["found"] == pytest.approx(0.2, rel=1e-12) and found["time"] == 1.0
+    assert " NT reaches 70            BLOCK.TOP " in (tmp_path / "deck.lst").read_text()
+
+
+@pytest.mark.parametrize(("cards", "check"), [
+    (WARM, "NT reaches 130., BLOCK.TOP, LAST"),
+    (WARM, "NT reaches 110., BLOCK.TOP, 0.3"),     # later than that
+    (WARM, "NT reaches 110., BLOCK, LAST"),        # but for the bottom of the set
+    (pressed(), "S22 reaches 1., BLOCK, LAST"),
+])
+def test_what_is_never_reached_has_no_value(tmp_path, cards, check):
+    (found,), said = judged(tmp_path, cards, f"{check}, 1., 1.E9", status=4)
+    assert found["reason"] == "never reached" and not {"found", "time"} & set(found)
+    assert "expected 1, but never reached" in said
+    assert "failed: never reached" in (tmp_path / "deck.lst").read_text()
+
+
+def test_a_set_is_judged_at_its_worst_node(tmp_path):
+    """At half of the height the temperature is half of the way from START."""
+    pair = [n for n, place in nodes_of(BLOCK).items() if place in ((0.0, 0.5), (0.0, 1.0))]
+    (found,), _ = judged(tmp_path, [*WARM, "*NSET, NSET=PAIR", *map(str, pair)],
+                         "NT reaches 70., PAIR, LAST, 0.2, 0.3, ABS")
+    assert found["found"] == pytest.approx(0.4, rel=1e-12)
+
+
+def test_contact_is_passed_by_the_pressure_of_an_interface(tmp_path):
+    """Blocks with a gap of a fifth of the way: closed from 0.2 on, the pressure grows linearly."""
+    lower = mesh("LOWER", [0.0, 0.5, 1.25], [-1.0, 0.0], first=101)
+    cards = [*BLOCK, *lower, *material("BLOCK", (YOUNG, 0.0)), *material("LOWER", (YOUNG, 0.0)),
+             "*SURFACE INTERACTION, NAME=FACES",
+             "*CONTACT PAIR, INTERACTION=FACES, NAME=FACE", "BLOCK.BOTTOM, LOWER.TOP",
+             "*CLEARANCE, SLAVE=BLOCK.BOTTOM, MASTER=LOWER.TOP, VALUE=0.002",
+             *static("*BOUNDARY", "LOWER.BOTTOM, 2", "101, 1", "1, 1", "BLOCK.TOP, 2, 2, -0.01",
+                     times="0.2, 1.")]
+    # p = E (0.01 t - 0.002)/2
+    found, _ = judged(tmp_path, cards, "pressure reaches 2., FACE, LAST, 0.6, 1.E-9",
+                      "pressure reaches 2., FACE@0.5, LAST, 0.6, 1.E-9",
+                      "normal_force reaches 1.25, , LAST, 0.4, 1.E-9")
+    assert len(found) == 3 and all(each["passed"] for each in found)
+
+
+def test_a_run_that_goes_on_remembers_what_was_reached(tmp_path):
+    """Before the state, and between it and the increment before."""
+    checks = ["NT reaches 70., BLOCK.TOP, LAST, 0.2, 1.E-9", "NT reaches 30., MAX, LAST, 0.04, 1.E-9",
+              "NT reaches 112.5, MAX, LAST, 0.37, 1.E-9"]
+    judged(tmp_path, [*WARM[:-8], "*RESTART, WRITE", *WARM[-8:]], *checks)
+    deck = tmp_path / "deck.inp"
+    for time in (0.1, 0.3, 0.8):
+        result = go_on(deck, deck.with_suffix(".vtkhdf"), tmp_path / f"from{time}", time)
+        with h5py.File(result) as file:
+            assert file["run"].attrs["verify_passed"] == 3

@@ -1,0 +1,115 @@
+"""Pictures and pages of the histories of sets, and their tables, against the result file."""
+
+import base64
+import csv
+import gzip
+import json
+import re
+import sys
+from pathlib import Path
+
+import h5py
+import numpy as np
+import pytest
+
+TESTS = Path(__file__).resolve().parents[1]
+sys.path[:0] = [str(TESTS / each) for each in ("decks", "reference")] + [str(TESTS.parent / "python")]
+
+from comparing import coarse_pictures  # noqa: E402, F401  a fixture
+from test_prints import BODY, HELD, static  # noqa: E402
+from test_set_histories import solve  # noqa: E402
+
+from thercon.post.cli import main as plot  # noqa: E402
+from thercon.post.report.cli import main as report  # noqa: E402
+
+CARDS = ["*NODE PRINT, NSET=BLOCK.TOP, FREQUENCY=2", "U", "*NODE PRINT, NSET=BLOCK.BOTTOM, TOTALS=ONLY",
+         "RF", "*EL PRINT, ELSET=BLOCK", "S"]
+
+
+@pytest.fixture(scope="module")
+def result(tmp_path_factory):
+    """Return the result of a pressed block with histories of two node sets and an element set."""
+    return solve(tmp_path_factory.mktemp("block"), BODY, ['*OPTIONS, UNITS="mm MPa W C"'], static(
+        *HELD, "*DLOAD", "BLOCK, P3, 6.", *CARDS, times="0.2, 1."))
+
+
+def rows(path):
+    """Return the columns of a CSV file."""
+    with open(path, newline="") as file:
+        found = list(csv.DictReader(file))
+    return {key: np.array([float(row[key]) for row in found]) for key in found[0]}
+
+
+def test_every_set_has_a_picture_and_a_table(result, tmp_path, capsys):
+    assert plot(["history", str(result), "--csv", "--out", str(tmp_path)]) == 0
+    names = [f"deck.history-{name}" for name in ("BLOCK.BOTTOM", "BLOCK.TOP", "BLOCK")]
+    assert capsys.readouterr().out.split() == [
+        str(tmp_path / f"{name}.{end}") for name in names for end in ("png", "svg", "csv")]
+    with h5py.File(result) as file:
+        group = file["history/nodes/BLOCK.TOP"]
+        table = rows(tmp_path / "deck.history-BLOCK.TOP.csv")
+        for k, node in enumerate(group["node"]):
+            np.testing.assert_array_equal(table[f"displacement_y_{node}"],
+                                          group["displacement_y"][:, k])
+        np.testing.assert_array_equal(table["increment"], [2, 4, 5])
+        stress = file["history/elements/BLOCK/stress_yy"][:, 9]
+    np.testing.assert_array_equal(rows(tmp_path / "deck.history-BLOCK.csv")["stress_yy_2.1"], stress)
+    total = rows(tmp_path / "deck.history-BLOCK.BOTTOM.csv")["total_external_force_y"]
+    np.testing.assert_allclose(total, 1.25 * 6.0 * np.arange(1, 6) / 5)
+
+
+def test_a_set_and_a_quantity_are_chosen(result, tmp_path, capsys):
+    arguments = ["--set", "block.top", "--quantity", "displacement_y", "--csv", "--out", str(tmp_path)]
+    assert plot(["history", str(result), *arguments]) == 0
+    with h5py.File(result) as file:
+        nodes = file["history/nodes/BLOCK.TOP/node"][()]
+    assert list(rows(tmp_path / "deck.history-BLOCK.TOP-displacement_y.csv")) == [
+        "increment", "time", "load", *(f"displacement_y_{node}" for node in nodes)]
+
+
+@pytest.mark.parametrize(("arguments", "words"), [
+    (["--set", "BLOCK.TOPP"], "has no history of a set 'BLOCK.TOPP', nearest: 'BLOCK.TOP': there are "
+     "BLOCK.BOTTOM, BLOCK.TOP, BLOCK"),
+    (["--quantity", "temperatur"], "has no history of 'temperatur'"),
+    (["--set", "BLOCK.TOP", "--quantity", "displacement"],
+     "has no history of 'displacement', nearest: 'displacement_"),
+])
+def test_what_is_not_there_is_said(result, tmp_path, capsys, arguments, words):
+    assert plot(["history", str(result), *arguments, "--out", str(tmp_path)]) == 2
+    assert words in capsys.readouterr().err
+
+
+def test_a_result_without_histories_says_what_makes_them(tmp_path, capsys):
+    plain = solve(tmp_path, BODY, static(*HELD, "*DLOAD", "BLOCK, P3, 6."))
+    assert plot(["history", str(plain), "--out", str(tmp_path)]) == 2
+    assert capsys.readouterr().err == (
+        f"plot: error: {plain}: holds no histories: *NODE PRINT and *EL PRINT of the deck say of which "
+        "sets it keeps them\n")
+
+
+def page_data(path):
+    """Return what the script of a page is given."""
+    packed = re.search('<script type="application/gzip" id="data">(.*?)</script>', path.read_text())[1]
+    return json.loads(gzip.decompress(base64.b64decode(packed)))
+
+
+def test_the_page_has_a_chart_of_each_quantity(result, tmp_path):
+    """Of many points their smallest, mean and largest values; of few the curve of each."""
+    assert report([str(result), "--out", str(tmp_path)]) == 0
+    found = {each["label"]: each for each in page_data(tmp_path / "deck.html")["history"]
+             if "curves" in each}
+    with h5py.File(result) as file:
+        stress = file["history/elements/BLOCK/stress_yy"][()]
+        moved = file["history/nodes/BLOCK.TOP/displacement_y"][()]
+        nodes = file["history/nodes/BLOCK.TOP/node"][()]
+    many = found["Stress yy of BLOCK, mean"]
+    assert many["unit"] == "MPa" and many["at"] == list(range(5))
+    for curve, take in zip(many["curves"], (np.min, np.mean, np.max), strict=True):
+        np.testing.assert_allclose(curve["values"], take(stress, axis=1))
+    few = found[f"Displacement y of BLOCK.TOP, node {nodes[0]}"]
+    assert few["at"] == [1, 3, 4] and few["values"][0] is None
+    assert [curve["name"] for curve in few["curves"]] == [f"node {n}" for n in nodes]
+    for k, curve in enumerate(few["curves"]):
+        np.testing.assert_allclose(curve["values"], moved[:, k])
+    total = found["Total external force y of BLOCK.BOTTOM"]
+    assert [curve["name"] for curve in total["curves"]] == [""]
