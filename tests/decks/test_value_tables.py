@@ -186,3 +186,16 @@ def test_a_row_with_other_values_is_solved_again(joint):
         expansion = EXPANSION * (LENGTH * hot - LENGTH**2 * heat / 40.0)
         assert float(row["normal_force FACE"]) / AREA == pytest.approx(
             expansion * YOUNG / (2 * LENGTH), rel=1e-6)
+
+
+def test_a_row_that_begins_anew_has_no_results_of_an_earlier_run(joint):
+    """As where a run with another deck was killed before it wrote its own."""
+    table = values("gap\n1e-4\n")
+    run("run", joint, "--table", table, "--out", "out", "--quiet")
+    copy_deck(joint, joint, changes={"0.1, 1.": "0.0001, 1."})
+    process = subprocess.Popen([PROGRAM, "run", "joint.inp", "--table", table, "--out", "out", "--quiet"])
+    until = time.monotonic() + PATIENCE
+    while os.path.exists("out/joint-1.csv"):
+        assert time.monotonic() < until and process.poll() is None
+    process.kill()
+    process.wait()
