@@ -67,6 +67,8 @@ def test_checks_are_columns_by_their_names(joint):
     first, second = rows()
     names = list(first)
     assert names.count("heat_rate FACE") == 1 and names.count("NT 6") == 1
+    named = [line.rpartition(",")[0] for line in Path("out/joint-1.csv").read_text().splitlines()]
+    assert len(set(named)) == len(named)
     assert (float(first["NT 6"]), float(second["NT 6"])) == (300.0, 600.0)
     assert (float(first["NT 6 at 0.5"]), float(second["NT 6 at 0.5"])) == (150.0, 300.0)
     assert [(row["checks_passed"], row["checks_failed"]) for row in rows()] == [("3", "1"), ("1", "3")]
