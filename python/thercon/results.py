@@ -161,7 +161,8 @@ class Result:
 
     path: of the file; name: `NAME`; times: (n,) total times of the accepted increments.
     status, outcome, checks, messages and document are those of the run; `thercon.open` knows the
-    first two alone, from the file: status 0, or 4 where *VERIFY checks failed.
+    first two alone, from the file: status 0, 4 where *VERIFY checks failed, None where the run was
+    not finished.
 
     >>> result = thercon.open("results/joint")
     >>> result.interfaces
@@ -174,9 +175,12 @@ class Result:
         self.path, self.name = self._file.path, self._file.name
         self.times = self._file.history["time"]
         self.document, self.messages = document or {}, list(messages)
-        failed = bool(self._file.file["run"].attrs.get("verify_failed", 0))
-        self.status = self.document.get("status", 4 if failed else 0)
-        self.outcome = self.document.get("outcome", "check failed" if failed else "solved")
+        attributes = self._file.file["run"].attrs
+        known = (0, "solved") if attributes.get("finished", 1) else (None, "not finished")
+        if known[0] == 0 and attributes.get("verify_failed", 0):
+            known = 4, "check failed"
+        self.status, self.outcome = (self.document.get(key, value) for key, value in
+                                     zip(("status", "outcome"), known))
 
     def __repr__(self):
         """Return what result it is."""
@@ -326,10 +330,10 @@ class Result:
                     estimate = np.nan, "end of the face"
                 rows[f"{key} {name}"] = (values[-1], *estimate, unit)
         rows |= self._ranges()
-        history = self._file.file["history"]
+        known = self._file.uncertainties("increment")
         for key in ("heat_in", "heat_out"):
-            if key in history:
-                rows[key] = (numbers(history, key)[-1], np.nan, "", text(history[key].attrs["unit"]))
+            if key in self.history:
+                rows[key] = (self.history[key][-1], *estimate_of(known.get(key)), self.history.units[key])
         for name, known in self._file.maxima.items():
             for key, entry in known.items():
                 if not np.isnan(entry[2][-1, 0]):

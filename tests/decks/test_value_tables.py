@@ -67,6 +67,8 @@ def test_checks_are_columns_by_their_names(joint):
     first, second = rows()
     names = list(first)
     assert names.count("heat_rate FACE") == 1 and names.count("NT 6") == 1
+    named = [line.rpartition(",")[0] for line in Path("out/joint-1.csv").read_text().splitlines()]
+    assert len(set(named)) == len(named)
     assert (float(first["NT 6"]), float(second["NT 6"])) == (300.0, 600.0)
     assert (float(first["NT 6 at 0.5"]), float(second["NT 6 at 0.5"])) == (150.0, 300.0)
     assert [(row["checks_passed"], row["checks_failed"]) for row in rows()] == [("3", "1"), ("1", "3")]
@@ -186,3 +188,16 @@ def test_a_row_with_other_values_is_solved_again(joint):
         expansion = EXPANSION * (LENGTH * hot - LENGTH**2 * heat / 40.0)
         assert float(row["normal_force FACE"]) / AREA == pytest.approx(
             expansion * YOUNG / (2 * LENGTH), rel=1e-6)
+
+
+def test_a_row_that_begins_anew_has_no_results_of_an_earlier_run(joint):
+    """As where a run with another deck was killed before it wrote its own."""
+    table = values("gap\n1e-4\n")
+    run("run", joint, "--table", table, "--out", "out", "--quiet")
+    copy_deck(joint, joint, changes={"0.1, 1.": "0.0001, 1."})
+    process = subprocess.Popen([PROGRAM, "run", "joint.inp", "--table", table, "--out", "out", "--quiet"])
+    until = time.monotonic() + PATIENCE
+    while os.path.exists("out/joint-1.csv"):
+        assert time.monotonic() < until and process.poll() is None
+    process.kill()
+    process.wait()

@@ -109,6 +109,14 @@ def test_the_python_package_works_without_the_sources(site, tmp_path):
     assert "color-scheme" in (tmp_path / "two_rods.html").read_text()
 
 
+def test_the_package_declares_what_it_imports():
+    sources = "".join(path.read_text() for path in (ROOT / "python").rglob("*.py"))
+    imported = set(re.findall(r"^ *(?:from|import) (\w+)", sources, re.M))
+    pinned = {line.split("==")[0] for line in (ROOT / "post/requirements.txt").read_text().split()}
+    project = tomllib.loads((ROOT / "pyproject.toml").read_text())["project"]
+    assert set(project["dependencies"]) == imported & pinned
+
+
 def test_the_version_is_that_of_cmake():
     project = tomllib.loads((ROOT / "pyproject.toml").read_text())
     version = project["tool"]["scikit-build"]["metadata"]["version"]

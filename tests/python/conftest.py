@@ -1,26 +1,11 @@
-"""The first deck of docs/deck.md with the parameters of docs/python.md, and the package."""
+"""The package, and a deck for it."""
 
-import re
 import sys
-from pathlib import Path
 
 import pytest
+from first_deck import ROOT, joint_deck
 
-ROOT = Path(__file__).resolve().parents[2]
-sys.path[:0] = [str(ROOT / "python")]
-
-CHANGES = {"2, P3, 50.": "2, P3, <pressure>", "0., 2.E-4, 1.": "0., <factor>, <exponent>"}
-
-
-def joint_deck():
-    """Return the cards of the deck as docs/python.md says."""
-    cards = (ROOT / "docs/deck.md").read_text().split("```")[1].lstrip()
-    document = (ROOT / "docs/python.md").read_text()
-    parameters = re.search(r"^    (\*PARAMETER\n)    (.*\n)", document, re.M)
-    for old, new in CHANGES.items():
-        assert cards.count(f"\n{old}\n") == 1 and f"`{new}`" in document
-        cards = cards.replace(f"\n{old}\n", f"\n{new}\n")
-    return parameters[1] + parameters[2] + cards
+sys.path.insert(0, str(ROOT / "python"))
 
 
 @pytest.fixture
@@ -30,8 +15,3 @@ def joint(tmp_path, monkeypatch):
     deck = tmp_path / "joint.inp"
     deck.write_text(joint_deck())
     return deck
-
-
-def heat_rate(pressure, factor=2e-4, exponent=1.0):
-    """Return the heat through three resistances in series, docs/deck.md."""
-    return 1800.0 / (400.0 + 1.0 / (factor * pressure**exponent))

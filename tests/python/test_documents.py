@@ -5,19 +5,19 @@ import doctest
 import io
 import re
 
-import conftest
 import numpy as np
 import pytest
 import thercon
 import thercon.results
 import thercon.runs
+from first_deck import ROOT, heat_rate
 
 BLOCK = re.compile(r"```python\n(.*?)```\n(?:\n((?:    [^\n]*\n)+))?", re.S)
 
 
 def blocks(document):
     """Return the blocks of code of a document with what they are said to print."""
-    return BLOCK.findall((conftest.ROOT / "docs" / document).read_text())
+    return BLOCK.findall((ROOT / "docs" / document).read_text())
 
 
 def run_block(code, space):
@@ -33,8 +33,8 @@ def test_the_examples_print_what_the_document_says(joint):
     for code, said in blocks("python.md"):
         assert run_block(code, space) == re.sub("^    ", "", said, flags=re.M)
     pressure, factor, found = space["table"][["pressure", "factor", "heat_rate JOINT"]].to_numpy().T
-    assert found == pytest.approx(conftest.heat_rate(pressure, factor), rel=1e-9)
-    assert conftest.heat_rate(np.array(space["pressures"]), 2e-4, 0.95) == pytest.approx(
+    assert found == pytest.approx(heat_rate(pressure, factor), rel=1e-9)
+    assert heat_rate(np.array(space["pressures"]), 2e-4, 0.95) == pytest.approx(
         space["measured"], abs=5e-4)
 
 

@@ -6,18 +6,18 @@ import subprocess
 import sys
 import time
 
-import conftest
 import h5py
 import numpy as np
 import pytest
 import thercon
+from first_deck import ROOT, heat_rate
 
 HEAVY = "numpy", "h5py", "pandas", "matplotlib"
 
 
 def test_import_takes_no_other_package(joint):
     """And a run needs no pandas, as long as no table is asked for."""
-    code = (f"import sys; sys.path.insert(0, {str(conftest.ROOT / 'python')!r}); import thercon\n"
+    code = (f"import sys; sys.path.insert(0, {str(ROOT / 'python')!r}); import thercon\n"
             f"assert not set({HEAVY}) & set(sys.modules)\n"
             "thercon.run('joint.inp').interface('JOINT').pressure\n"
             "assert not {'pandas', 'matplotlib'} & set(sys.modules)\n")
@@ -137,7 +137,7 @@ def test_a_row_that_fails_leaves_the_others_alone(joint):
     assert table["reason"][1] and np.isnan(table["heat_rate JOINT"][1])
     for row in (0, 2):
         assert table["heat_rate JOINT"][row] == pytest.approx(
-            conftest.heat_rate(25, table["factor"][row]), rel=1e-9)
+            heat_rate(25, table["factor"][row]), rel=1e-9)
 
 
 def test_a_mistake_in_the_table_is_an_exception(joint):
@@ -151,7 +151,7 @@ def test_ctrl_c_ends_a_table_and_the_same_call_goes_on(joint):
     """In another process, which is told to end while its rows run."""
     cards = joint.read_text().replace("0.25, 1.", "0.001, 1.")
     joint.write_text(cards)
-    code = (f"import sys; sys.path.insert(0, {str(conftest.ROOT / 'python')!r}); import thercon\n"
+    code = (f"import sys; sys.path.insert(0, {str(ROOT / 'python')!r}); import thercon\n"
             "table = thercon.run_many('joint.inp', {'pressure': [10, 20, 30, 40]}, out='many')\n"
             "table.to_csv('answer.csv')")
     process = subprocess.Popen([sys.executable, "-c", code], stderr=subprocess.PIPE, text=True)
@@ -167,5 +167,5 @@ def test_ctrl_c_ends_a_table_and_the_same_call_goes_on(joint):
     assert os.stat("many/joint-1.vtkhdf").st_mtime_ns == first
     table = thercon.run_many("joint.inp", {"pressure": [10, 20, 30, 40]}, out="many")
     assert table["heat_rate JOINT"].to_numpy() == pytest.approx(
-        conftest.heat_rate(table["pressure"].to_numpy()), rel=1e-9)
+        heat_rate(table["pressure"].to_numpy()), rel=1e-9)
     assert set(table["reason"]) == {"its result is finished"}
