@@ -18,6 +18,7 @@ sys.path[:0] = [str(TESTS / each) for each in ("decks", "reference")] + [str(TES
 from browser import Browser  # noqa: E402
 from comparing import coarse_pictures  # noqa: E402, F401  a fixture
 from test_prints import BODY, HELD, static  # noqa: E402
+from test_reached import WARM, judged  # noqa: E402
 from test_set_histories import solve  # noqa: E402
 
 from thercon.post.cli import main as plot  # noqa: E402
@@ -134,3 +135,14 @@ def test_the_browser_draws_the_curves(result, tmp_path):
             assert {curve["name"] for curve in each["curves"]} - {""} <= set(names)
             assert caption.startswith(each["label"])
         assert not browser.messages()
+
+
+def test_the_page_has_the_checks_of_reached_values(tmp_path):
+    """Also one whose words are wider than the column of the listing."""
+    judged(tmp_path, WARM, "heat_imbalance_pointwise reaches 1.E3, , LAST, 1., 1.",
+           "NT reaches 70., BLOCK.TOP, LAST, 0.2, 1.E-9", status=4)
+    assert report([str(tmp_path / "deck.vtkhdf"), "--out", str(tmp_path)]) == 0
+    rows = re.findall("<tr><th scope=\"row\">.*?</tr>", (tmp_path / "deck.html").read_text())
+    told = [row for row in rows if " reaches " in row]
+    assert "heat_imbalance_pointwise reaches 1000<" in told[0] and "FAIL</span> never reached" in told[0]
+    assert "NT reaches 70<" in told[1] and ">PASS</span>" in told[1]
