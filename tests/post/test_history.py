@@ -15,8 +15,10 @@ import pytest
 TESTS = Path(__file__).resolve().parents[1]
 sys.path[:0] = [str(TESTS / each) for each in ("decks", "reference")] + [str(TESTS.parent / "python")]
 
+from browser import Browser  # noqa: E402
 from comparing import coarse_pictures  # noqa: E402, F401  a fixture
 from test_prints import BODY, HELD, static  # noqa: E402
+from test_reached import WARM, judged  # noqa: E402
 from test_set_histories import solve  # noqa: E402
 
 from thercon.post.cli import main as plot  # noqa: E402
@@ -113,3 +115,34 @@ def test_the_page_has_a_chart_of_each_quantity(result, tmp_path):
         np.testing.assert_allclose(curve["values"], moved[:, k])
     total = found["Total external force y of BLOCK.BOTTOM"]
     assert [curve["name"] for curve in total["curves"]] == [""]
+
+
+def test_the_browser_draws_the_curves(result, tmp_path):
+    """A curve for each node of a set, with its name below, and three of many points."""
+    assert report([str(result), "--out", str(tmp_path)]) == 0
+    entries = page_data(tmp_path / "deck.html")["history"]
+    with Browser() as browser:
+        browser.open(tmp_path / "deck.html")
+        for k, each in enumerate(entries):
+            if "curves" not in each:
+                continue
+            lines, names, caption = browser.run(
+                "const chart = document.getElementById('history-' + arguments[0]);"
+                "return [chart.querySelectorAll('g path[fill=none]').length, "
+                "[...chart.querySelectorAll('svg > text')].map(e => e.textContent), "
+                "chart.querySelector('figcaption').textContent];", k)
+            assert lines == len(each["curves"])
+            assert {curve["name"] for curve in each["curves"]} - {""} <= set(names)
+            assert caption.startswith(each["label"])
+        assert not browser.messages()
+
+
+def test_the_page_has_the_checks_of_reached_values(tmp_path):
+    """Also one whose words are wider than the column of the listing."""
+    judged(tmp_path, WARM, "heat_imbalance_pointwise reaches 1.E3, , LAST, 1., 1.",
+           "NT reaches 70., BLOCK.TOP, LAST, 0.2, 1.E-9", status=4)
+    assert report([str(tmp_path / "deck.vtkhdf"), "--out", str(tmp_path)]) == 0
+    rows = re.findall("<tr><th scope=\"row\">.*?</tr>", (tmp_path / "deck.html").read_text())
+    told = [row for row in rows if " reaches " in row]
+    assert "heat_imbalance_pointwise reaches 1000<" in told[0] and "FAIL</span> never reached" in told[0]
+    assert "NT reaches 70<" in told[1] and ">PASS</span>" in told[1]

@@ -394,6 +394,10 @@ UPPER, LOWER
 *COUPLED TEMPERATURE-DISPLACEMENT, STEADY STATE
 1., 1.
 *STABILITY
+*NODE PRINT, TOTALS=YES
+U, NT, RF, RFL
+*EL PRINT
+S, HFL
 *BOUNDARY
 1, 1, 2
 2, 2
@@ -428,7 +432,7 @@ def test_the_file_has_all_that_the_document_tells(results, tmp_path):
     branch = "*OPTIONS, WIDTH=300\n" + branch.replace(", DIRECT\n1., 1.", "\n0.5, 1.\n*CONTINUATION")
     tube = (EXAMPLES / "autofrettage.inp").read_text().split("*VERIFY")[0]
     creeping = tube.replace("*SOLID SECTION", "*CREEP, LAW=NORTON\n1.E-20, 5., 0.\n*SOLID SECTION").replace(
-        "*STATIC\n0.1, 1.", "*VISCO\n0.1, 1.", 1)
+        "*STATIC\n0.1, 1.", "*VISCO\n0.1, 1.\n*EL PRINT\nPEEQ, PE, CEEQ, CE", 1)
     worn = RUBBED.replace("*FRICTION", "*WEAR\n1.E-9\n*FRICTION", 1).replace("*STABILITY\n", "")
     melting = STRETCHED.replace("*SOLID SECTION", "*LATENT HEAT\n1., 1.E3, 2.E3\n*SOLID SECTION", 1)
     for name, deck in (("stretched", STRETCHED), ("rubbed", RUBBED), ("branch", branch), ("creeping", creeping),

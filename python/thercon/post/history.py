@@ -70,6 +70,10 @@ def picture(result, history, keys):
             axes.tick_params(labelbottom=True)
     for axes in grid.flat[len(keys):]:
         axes.set_visible(False)
+    members = next((axes.get_legend_handles_labels() for axes in grid.flat
+                    if len(axes.get_legend_handles_labels()[0]) > 1), None)
+    if members:  # the same in all panels
+        figure.legend(*members, **style.BELOW, ncols=len(members[0]))
     note = f"{history.kind.capitalize()} of {style.plain(history.name)}"
     members = "the nodes" if history.kind == "nodes" else "the integration points"
     figure.supxlabel(f"{note}\n{OF_SEVERAL.format(members)}" if ranges else note, fontsize=8.5)
@@ -90,8 +94,6 @@ def panel(axes, at, history, key):
     for number, (words, values) in enumerate(curves):
         known = np.isfinite(values)
         axes.plot(at[known], values[known], color=style.SERIES[number], label=words or None, **marks)
-    if len(curves) > 1:
-        axes.legend(loc="best", handlelength=1.8)
     return False
 
 

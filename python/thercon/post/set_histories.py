@@ -46,6 +46,7 @@ def set_histories(result):
     found = []
     for kind, word in KINDS.items():
         groups = result.file.get(f"history/{kind}", {})
+        need(result.file["history"], not isinstance(groups, h5py.Dataset), f"{kind} is no group")
         for name in groups:
             need(result.file["history"], isinstance(groups[name], h5py.Group),
                  f"{kind}/{name} is no group")
