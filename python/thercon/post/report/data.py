@@ -76,7 +76,8 @@ def loads(result):
         "judged": result.judged.tolist(),
         "unjudged": UNJUDGED,
         # A load that turns would draw loading and unloading over each other.
-        "axis": plain(result.units.load_label(result.load_label)) if rises else "Time",
+        "axis": plain(result.units.load_label(result.load_label) if rises
+                      else result.units.label("Time", "time")),
         "rises": rises,
     }
 
@@ -85,7 +86,7 @@ def contact_data(result, contact):
     """Return the profiles, states, edges and totals of one contact."""
     name, coordinate = contact.axis(None)
     unit = plain(result.units.names.get("length", ""))
-    windows = [contact.window(coordinate, with_heat=heat) for heat in (False, True)]
+    windows = [contact.window(coordinate, of_loads=loads) for loads in (False, True)]
     return {
         "name": contact.name,
         "axis": name,

@@ -134,7 +134,7 @@ const abscissa = data.load.rises ? data.load.values : times;
 let row = count - 1;
 const loadWords = k => `${data.load.label} ${show(data.load.values[k])} ${data.load.unit}`.trim();
 function tellLoad() {
-   const time = data.load.label === 'time' ? '' : `, time ${show(times[row])}`;
+   const time = data.load.label === 'time' ? '' : `, time ${show(times[row])} ${unit('time')}`.trimEnd();
    const factor = data.load.factors[row] === null ? '' : `, load factor ${show(data.load.factors[row])}`;
    $('now').textContent = `${row + 1} of ${count}: ${loadWords(row)}${time}${factor}`;
    $('unjudged').textContent = data.load.judged[row] ? '' : `Increment ${row + 1} is ${data.load.unjudged}, so tractions may scatter.`;
