@@ -20,7 +20,8 @@ from synthetic import write_result  # noqa: E402
 from thercon.post import stresses  # noqa: E402
 from thercon.post.cli import main as plot  # noqa: E402
 from thercon.post.report.cli import main  # noqa: E402
-from thercon.post.report.data import kept_steps  # noqa: E402
+from thercon.post.fields import TITLES  # noqa: E402
+from thercon.post.report.data import in_words, kept_steps  # noqa: E402
 from thercon.post.report.listing import read_listing  # noqa: E402
 from thercon.post.report.tables import remark, target_cells  # noqa: E402
 from thercon.post.result import Result  # noqa: E402
@@ -260,6 +261,55 @@ def test_a_uniform_field_and_a_reference_node_do_not_mislead(synthetic, browser)
     assert re.findall(r"−?\d+", browser.run(seen)[0]) == ["−100"]
     browser.run(look, "Temperature")
     assert "50000" not in browser.run(seen)[1]
+
+
+def test_a_run_of_heat_begins_with_temperatures(synthetic, browser):
+    def open_all(file):
+        contact = file["contact/CYLINDER"]
+        contact["pressure"][...] = contact["status"][...] = 0
+        contact["slave_temperature"] = hot = 500.0 + contact["gap"][()]
+        contact["master_temperature"] = hot - 100.0
+
+    page = synthetic(open_all)
+    browser.open(page)
+    shown = """return [document.getElementById('quantity').selectedOptions[0].text,
+        document.querySelectorAll('#tractions svg').length, document.getElementById('faces').textContent]"""
+    quantity, tractions, faces = browser.run(shown)
+    assert quantity.startswith("Temperature") and tractions == 0
+    assert "Temperature of the faces" in faces and "master" in faces
+    browser.open(synthetic())
+    quantity, tractions, faces = browser.run(shown)
+    assert quantity.startswith("von Mises") and tractions == 1 and not faces
+    assert browser.messages() == []
+
+
+def test_colours_of_most_of_the_area_have_arrows_where_values_lie_beyond(synthetic, browser):
+    """A spike at a node, however large; a range that is chosen; drawings of rigid bodies."""
+    def spike(file):
+        mises, points = file["VTKHDF/PointData/von_mises"], len(file["VTKHDF/Points"])
+        mises[int(np.argmax(file["VTKHDF/Points"][:, 1])) :: points] = 12345.0
+        group = file.create_group("rigid_surfaces/DIE")
+        group["points"] = np.array([[-1.0, -15.0], [-1.0, 5.0]])
+        group.attrs["reference_node"], group.attrs["rotation_node"] = 1, 2
+
+    browser.open(synthetic(spike))
+    seen = """return [[...document.querySelectorAll('#bars text')].map(t => Number(t.textContent)).filter(
+        Number.isFinite), document.querySelectorAll('.beyond').length, document.getElementById('range').textContent,
+        document.querySelectorAll('path.rigid').length]"""
+    ticks, arrows, words, rigid = browser.run(seen)
+    assert max(ticks) < 100.0 and arrows == 1 and rigid == 1
+    assert "largest 12345 at" in words and "values lie beyond the colours" in words
+    for key, value in (("low", "10"), ("high", "20000")):
+        browser.press(f"#{key}", value)
+    ticks, arrows, words, _ = browser.run(seen)
+    assert max(ticks) == 20000.0 and arrows == 1, "now values lie below"
+    assert browser.messages() == []
+
+
+def test_titles_of_panels_become_words_without_formulas():
+    for title, _ in TITLES.values():
+        assert not set("\\$_{}") & set(in_words(title))
+    assert in_words(TITLES["plastic_strain"][0]) == "Equivalent plastic strain \N{GREEK SMALL LETTER EPSILON}p"
 
 
 def edges_of(browser):

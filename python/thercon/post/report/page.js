@@ -217,10 +217,13 @@ function profile(id, title, quantities, label, zero, caption) {
    const isRounding = peak(now) <= 1e-6 * peak(all);
    chart($(id), {title: `${title} along interface ${c.name}, ${loadWords(row)}`, lines, uprights,
       xLabel: withUnit(c.axis, unit('length')), yLabel: label, caption,
-      xRange: [window[0] - room, window[1] + room], yRange: rangeOf($('same').checked || isRounding ? all : now, true)});
+      xRange: [window[0] - room, window[1] + room], yRange: rangeOf($('same').checked || isRounding ? all : now, id !== 'faces')});
 }
 function drawProfiles() {
    const c = contact(), said = loadWords(row), mu = c.friction;
+   profile('faces', 'Temperature of the faces', [['slave_temperature', 'slave', VERMILION, ''],
+      ['master_temperature', 'master', BLUE, '']], withUnit('temperature', unit('temperature')), false,
+      `Temperature of the faces, ${said}. ${part('profiles')}`);
    const shear = c.profiles.shear && c.profiles.shear.some(v => v !== 0);
    // Friction of one sign at this load is drawn positive, as in the pictures of post/plot.
    const values = shear ? rowOf(c.profiles.shear, c.at.length).filter(Number.isFinite) : [];
