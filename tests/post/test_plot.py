@@ -741,13 +741,15 @@ def test_values_that_differ_by_rounding_have_one_colour():
     np.testing.assert_array_equal(field_colours.settle(values, levels, 10.0), values)
 
 
-def test_colours_cover_the_values_of_nearly_all_of_the_area():
+def test_colours_leave_out_a_spike_of_little_area():
     """However many points a spike has: a mesh is fine there. Temperatures are covered whole."""
     values, areas = np.concatenate((np.linspace(0.0, 100.0, 100), np.full(300, 1000.0))), np.ones(400)
     for share, quantity, highest in ((0.003, "von_mises", 100.0), (0.02, "von_mises", 1000.0),
                                      (0.003, "temperature", 1000.0)):
         areas[100:] = share * 100.0 / 300.0
         assert field_colours.limits(values, quantity, 1000.0, areas)[-1] == highest
+    near = np.where(values == 1000.0, 130.0, values)
+    assert field_colours.limits(near, "von_mises", 130.0, areas)[-1] == 130.0, "no spike"
     np.testing.assert_allclose(field_colours.limits(values, "yy", 1.0, areas, (-30.0, 70.0))[[0, -1]],
                                [-30.0, 70.0])
 

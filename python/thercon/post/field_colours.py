@@ -15,6 +15,7 @@ NOTHING = 1e-6  # of the largest magnitude: what is smaller everywhere is 0
 UNSEEN = 1e-4  # of the range of temperatures: so far they may be beyond the colours
 UNIFORM = 1e-3  # of the largest magnitude: a smaller range has one colour
 BEYOND = 0.005  # of the area, at either end of a scale: so much may have values beyond its colours
+FAR = 1.5  # times the range of the others: values that extend it by less have colours too
 WIDE = 1.8  # width over height of models whose panels are one below the other
 
 
@@ -43,8 +44,8 @@ def limits(values, quantity, scale, areas=None, given=None):
     Values whose range is below UNIFORM of the magnitude `scale` have two levels, about their middle.
 
     Stress peaks in re-entrant and clamped corners grow with every refinement and would leave one
-    colour for the rest: values other than temperatures cover 99 % of the area alone, by the `areas`
-    that they stand for (None: equal ones).
+    colour for the rest: where they are FAR, colours of other values than temperatures cover 99 % of the
+    area alone, by the `areas` that they stand for (None: equal ones).
     """
     if given is not None:
         levels = ticks(*given)
@@ -62,7 +63,8 @@ def limits(values, quantity, scale, areas=None, given=None):
         order = np.argsort(values)
         below = np.cumsum(areas[order])
         ends = values[order[np.searchsorted(below, np.array([BEYOND, 1.0 - BEYOND]) * below[-1])]]
-        low, high = ends if np.ptp(ends) > UNIFORM * scale else (low, high)
+        if np.ptp(ends) > UNIFORM * scale and high - low > FAR * np.ptp(ends):
+            low, high = ends
     unseen = UNSEEN * (high - low) * (quantity == "temperature")
     return ticks(low + unseen, high - unseen)
 

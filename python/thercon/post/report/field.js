@@ -116,7 +116,7 @@ function areaOf(group, e, places) {
       twice += places[2 * at(k)] * places[2 * at(k + 1) + 1] - places[2 * at(k + 1)] * places[2 * at(k) + 1];
    return 0.5 * Math.abs(twice);
 }
-// The range of values but for those of half a percent of the area at either end.
+// The range of values; where half a percent of the area at either end extends it far, without these.
 function rangeOfMost(values) {
    const whole = values.reduce((sum, [, area]) => sum + area, 0);
    let before = 0, low, high;
@@ -125,7 +125,8 @@ function rangeOfMost(values) {
       if (low === undefined && before >= 0.005 * whole) low = value;
       if (high === undefined && before >= 0.995 * whole) high = value;
    }
-   return [low, high];
+   const [least, most] = [values[0][0], values.at(-1)[0]];
+   return most - least > 1.5 * (high - low) ? [low, high] : [least, most];
 }
 // One scale for all bodies; where it is asked for, those whose ranges differ tenfold have their own.
 function scalesOf(quantity, steps, places, box) {
@@ -148,6 +149,7 @@ function scalesOf(quantity, steps, places, box) {
    }
    const [low, high] = ['low', 'high'].map(id => $(id).value === '' ? NaN : Number($(id).value));
    for (const scale of found) {
+      scale.isGiven = Number.isFinite(low) || Number.isFinite(high);
       scale.low = Number.isFinite(low) ? low : scale.low;
       scale.high = Number.isFinite(high) ? Math.max(high, scale.low) : Math.max(scale.high, scale.low);
    }
@@ -155,11 +157,13 @@ function scalesOf(quantity, steps, places, box) {
 }
 // Levels and their colours, which mean the same in every picture: red is positive, as tension, and blue
 // negative, the darker the larger; of quantities without a sign bright is large.
-function levelled({low, high, ends, bodies}, quantity, peak) {
+function levelled({low, high, ends, isGiven, bodies}, quantity, peak) {
    const isUniform = high - low <= UNIFORM * peak, value = 0.5 * (low + high);
-   const inner = isUniform ? [] : ticks(low, high, BANDS - 2), step = inner.length > 1 ? inner[1] - inner[0] : 2 * peak || 1;
-   const first = isUniform ? value - 0.5 * step : step * Math.floor(low / step + 1e-6);
-   const last = isUniform ? value + 0.5 * step : step * Math.ceil(high / step - 1e-6);
+   const inner = isUniform ? [] : ticks(low, high, BANDS - 2);
+   let step = inner.length > 1 ? inner[1] - inner[0] : 2 * peak || 1;
+   let first = isUniform ? value - 0.5 * step : step * Math.floor(low / step + 1e-6);
+   let last = isUniform ? value + 0.5 * step : step * Math.ceil(high / step - 1e-6);
+   if (isGiven && !isUniform && Math.max(low - first, last - high) > 1e-6 * step) [first, last, step] = [low, high, 0.1 * (high - low)];
    const bands = Math.max(1, Math.round((last - first) / step));
    const middles = Array.from({length: bands}, (_, k) => first + (k + 0.5) * step), sizes = middles.map(Math.abs);
    const least = first < 0 && last > 0 ? 0 : Math.min(...sizes), range = Math.max(...sizes) - least;
