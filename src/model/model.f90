@@ -31,6 +31,7 @@ module model
       character(:), allocatable :: stress        !! such as MPa
       character(:), allocatable :: power         !! such as W
       character(:), allocatable :: temperature   !! such as C
+      character(:), allocatable :: time          !! such as s; may be empty beside the others
    end type unit_labels_type
 
    !> *PHYSICAL CONSTANTS.

@@ -34,6 +34,7 @@ module results
    use reported_quantities, only: datasets, geometry
    use accuracy_lines, only: write_accuracy
    use restart_results, only: restart_results_type
+   use rigid_results, only: write_rigid_surfaces
    use result_fields, only: cell_sets, contact_grid_type, field_results_type, interface_sets, &
       node_sets
    use run_summaries, only: run_summary_type, write_run
@@ -483,6 +484,7 @@ contains
 
       associate (file => self%file%content, interfaces => self%interfaces)
          call self%fields%write_head(file, model, self%element_points)
+         call write_rigid_surfaces(file, model%mesh)
          call file%create_group('/contact')
          do i = 1, size(self%tables)
             if (size(self%tables(i)%sets) > 0) call file%create_group(self%tables(i)%group)

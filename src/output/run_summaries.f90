@@ -162,6 +162,8 @@ contains
       call add(entries, nowhere, '', or_blank(model%units%stress), 'unit_stress')
       call add(entries, nowhere, '', or_blank(model%units%power), 'unit_power')
       call add(entries, nowhere, '', or_blank(model%units%temperature), 'unit_temperature')
+      if (or_blank(model%units%time) /= '') call add(entries, nowhere, '', model%units%time, &
+         'unit_time')
       if (any(model%steps%is_transient)) call add(entries, nowhere, '', &
          run%sizes%heat_factored, 'factorisations_thermal')
       if (allocated(run%origin)) call add(entries, nowhere, '', run%origin, 'continued_from')

@@ -23,6 +23,7 @@ contains
       words = with('stress', labels%stress, words)
       words = with('power', labels%power, words)
       words = with('temperature', labels%temperature, words)
+      if (or_blank(labels%time) /= '') words = with('time', labels%time, words)
    end function unit_label
 
    !> The same; where the deck has no labels, what is measured.

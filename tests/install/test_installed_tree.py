@@ -60,7 +60,8 @@ def test_all_decks_scripts_and_documents_are_installed(prefix):
                 for path in found}
 
     installed = files(prefix / "share/thercon", ".")
-    assert installed == files(ROOT, "input", "post", "python", "docs", "README.md", "CHANGELOG.md", "LICENSE")
+    assert installed == files(ROOT, "input", "post", "python", "docs", "README.md", "CHANGELOG.md",
+                              "CITATION.cff", "LICENSE")
     assert not any(str(ROOT).encode() in content for _, content in installed.values())
 
 

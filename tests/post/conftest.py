@@ -1,6 +1,8 @@
 """Fixtures of several tests, and the marks of tests/decks, whose decks some tests here use."""
 
+import shutil
 import sys
+from pathlib import Path
 
 import pytest
 from browser import Browser
@@ -29,9 +31,15 @@ def browser():
         yield opened
 
 
-@pytest.fixture
-def result(tmp_path):
-    """Return the path of the usual synthetic result."""
-    path = tmp_path / "case.vtkhdf"
+@pytest.fixture(scope="session")
+def usual(tmp_path_factory):
+    """Return the path of the usual synthetic result, which tests leave as it is."""
+    path = tmp_path_factory.mktemp("usual") / "case.vtkhdf"
     write_result(path)
     return path
+
+
+@pytest.fixture
+def result(usual, tmp_path):
+    """Return the path of the usual synthetic result, a copy that the test may change."""
+    return Path(shutil.copy(usual, tmp_path))

@@ -9,6 +9,7 @@ from pathlib import Path
 import h5py
 import numpy as np
 import pytest
+from matplotlib.figure import Figure
 from PIL import Image
 
 POST = Path(__file__).resolve().parents[2] / "post"
@@ -20,7 +21,8 @@ from synthetic import write_result  # noqa: E402
 from thercon.post import stresses  # noqa: E402
 from thercon.post.cli import main as plot  # noqa: E402
 from thercon.post.report.cli import main  # noqa: E402
-from thercon.post.report.data import kept_steps  # noqa: E402
+from thercon.post.fields import TITLES  # noqa: E402
+from thercon.post.report.data import in_words, kept_steps  # noqa: E402
 from thercon.post.report.listing import read_listing  # noqa: E402
 from thercon.post.report.tables import remark, target_cells  # noqa: E402
 from thercon.post.result import Result  # noqa: E402
@@ -38,12 +40,15 @@ def cylinder(tmp_path_factory):
 
 
 @pytest.fixture
-def synthetic(tmp_path):
+def synthetic(usual, tmp_path):
     """Return a function that writes a synthetic result and its page, and gives the page's path."""
 
     def call(change=lambda file: None, **choices):
         path = tmp_path / "case.vtkhdf"
-        write_result(path, **choices)
+        if choices:
+            write_result(path, **choices)
+        else:
+            shutil.copy(usual, path)
         with h5py.File(path, "r+") as file:
             change(file)
         assert main([str(path), "--out", str(tmp_path)]) == 0
@@ -262,6 +267,55 @@ def test_a_uniform_field_and_a_reference_node_do_not_mislead(synthetic, browser)
     assert "50000" not in browser.run(seen)[1]
 
 
+def test_a_run_of_heat_begins_with_temperatures(synthetic, browser):
+    def open_all(file):
+        contact = file["contact/CYLINDER"]
+        contact["pressure"][...] = contact["status"][...] = 0
+        contact["slave_temperature"] = hot = 500.0 + contact["gap"][()]
+        contact["master_temperature"] = hot - 100.0
+
+    page = synthetic(open_all)
+    browser.open(page)
+    shown = """return [document.getElementById('quantity').selectedOptions[0].text,
+        document.querySelectorAll('#tractions svg').length, document.getElementById('faces').textContent]"""
+    quantity, tractions, faces = browser.run(shown)
+    assert quantity.startswith("Temperature") and tractions == 0
+    assert "Temperature of the faces" in faces and "master" in faces
+    browser.open(synthetic())
+    quantity, tractions, faces = browser.run(shown)
+    assert quantity.startswith("von Mises") and tractions == 1 and not faces
+    assert browser.messages() == []
+
+
+def test_colours_of_most_of_the_area_have_arrows_where_values_lie_beyond(synthetic, browser):
+    """A spike at a node, however large; a range that is chosen; drawings of rigid bodies."""
+    def spike(file):
+        mises, points = file["VTKHDF/PointData/von_mises"], len(file["VTKHDF/Points"])
+        mises[int(np.argmax(file["VTKHDF/Points"][:, 1])) :: points] = 12345.0
+        group = file.create_group("rigid_surfaces/DIE")
+        group["points"] = np.array([[-1.0, -15.0], [-1.0, 5.0]])
+        group.attrs["reference_node"], group.attrs["rotation_node"] = 1, 2
+
+    browser.open(synthetic(spike))
+    seen = """return [[...document.querySelectorAll('#bars text')].map(t => Number(t.textContent)).filter(
+        Number.isFinite), document.querySelectorAll('.beyond').length, document.getElementById('range').textContent,
+        document.querySelectorAll('path.rigid').length]"""
+    ticks, arrows, words, rigid = browser.run(seen)
+    assert max(ticks) < 100.0 and arrows == 1 and rigid == 1
+    assert "largest 12345 at" in words and "values lie beyond the colours" in words
+    for key, value in (("low", "10"), ("high", "20000")):
+        browser.press(f"#{key}", value)
+    ticks, arrows, words, _ = browser.run(seen)
+    assert ticks[-1] == 20000.0 and arrows == 1, "now values lie below"
+    assert browser.messages() == []
+
+
+def test_titles_of_panels_become_words_without_formulas():
+    for title, _ in TITLES.values():
+        assert not set("\\$_{}") & set(in_words(title))
+    assert in_words(TITLES["plastic_strain"][0]) == "Equivalent plastic strain \N{GREEK SMALL LETTER EPSILON}p"
+
+
 def edges_of(browser):
     """Return how many curves of edges of contact and of stick the zones have."""
     return browser.run("""return [...document.querySelectorAll('#zones g > path[fill=none]')].map(
@@ -349,6 +403,7 @@ def test_the_page_can_be_read_in_both_schemes_and_on_a_telephone(cylinder, brows
             of(document.querySelector(each), k ? 'stroke' : 'fill') - behind))]"""
     behind, *apart = browser.run(colour)
     assert (behind > 384) == (mode == "light") and min(apart) > 250
+    browser.run("document.getElementById('quantity').add(new Option('x'.repeat(80)))")
     assert browser.run("return document.documentElement.scrollWidth") <= 400
     scheme = browser.run("return getComputedStyle(document.documentElement).colorScheme")
     assert set(scheme.split()) == ({"only", "light"} if mode == "light" else {"dark"})
@@ -487,8 +542,12 @@ def test_the_rounds_of_a_requested_accuracy_are_told(synthetic):
     assert "Rounds of the" not in synthetic().read_text()
 
 
-def test_increments_without_an_uncertainty_say_so(synthetic, browser, tmp_path):
+def test_increments_without_an_uncertainty_say_so(synthetic, browser, tmp_path, monkeypatch):
     """On the page and in pictures: a requested accuracy looks at the ends of steps."""
+    save = Figure.savefig
+    monkeypatch.setattr(Figure, "savefig", lambda figure, path, **options:
+                        save(figure, path, **options) if path.suffix == ".svg" else None)
+
     def ask(file):
         group = file.create_group("accuracy")
         for key in ("cpu_seconds", "unknowns", "elements", "increments"):

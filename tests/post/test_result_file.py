@@ -17,6 +17,7 @@ ROOT = Path(__file__).resolve().parents[2]
 sys.path.insert(0, str(ROOT / "python"))
 
 from thercon.post.result import Result  # noqa: E402
+from thercon.post.rigid_surfaces import lines_of, motion_of, surfaces  # noqa: E402
 
 INCREMENTS, NODES, ELEMENTS, PAIRS = 45, 326, 92, 21
 ENDS, AXIS = 5 + 5, 13 + 13   # nodes of the heated and the cold section, of the axis of symmetry
@@ -435,7 +436,8 @@ def test_the_file_has_all_that_the_document_tells(results, tmp_path):
         "*STATIC\n0.1, 1.", "*VISCO\n0.1, 1.\n*EL PRINT\nPEEQ, PE, CEEQ, CE", 1)
     worn = RUBBED.replace("*FRICTION", "*WEAR\n1.E-9\n*FRICTION", 1).replace("*STABILITY\n", "")
     melting = STRETCHED.replace("*SOLID SECTION", "*LATENT HEAT\n1., 1.E3, 2.E3\n*SOLID SECTION", 1)
-    for name, deck in (("stretched", STRETCHED), ("rubbed", RUBBED), ("branch", branch), ("creeping", creeping),
+    die = (EXAMPLES / "hot_die.inp").read_text().replace("MPa W C", "MPa W C s", 1)
+    for name, deck in (("stretched", STRETCHED), ("die", die), ("rubbed", RUBBED), ("branch", branch), ("creeping", creeping),
                        ("melting", melting), ("worn", worn)):
         (tmp_path / f"{name}.inp").write_text(deck)
         status, said = run(tmp_path / f"{name}.inp")
@@ -444,7 +446,7 @@ def test_the_file_has_all_that_the_document_tells(results, tmp_path):
     for path in (results / "cylinder.vtkhdf", results / "cylinder.contact.vtkhdf",
                  *(tmp_path / f"{name}.vtkhdf" for name in ("press_fit", "bolted_flange", "free_fit",
                                                             "stretched", "rubbed", "branch", "creeping",
-                                                            "melting", "worn"))):
+                                                            "melting", "worn", "die"))):
         with h5py.File(path) as file:
             names |= {name.rpartition("/")[2] for name in every_dataset(file)}
             names |= set(file["run"].attrs) if "run" in file else set()
@@ -499,10 +501,46 @@ TEMPERATURE_FACE, 11, 11, 80.
 """
 
 
+def test_a_title_is_that_of_the_deck_and_not_of_its_mesh(tmp_path):
+    """As gmsh writes one."""
+    mesh, rest = BLOCK.split("*MATERIAL", 1)
+    (tmp_path / "block.mesh").write_text(f"*Heading\n block.mesh\n{mesh}")
+    for heading in ("", "*HEADING\nA block\n"):
+        deck = tmp_path / "block.inp"
+        deck.write_text(f"*INCLUDE, INPUT=block.mesh\n{heading}*MATERIAL{rest}")
+        assert run(deck)[0] == 0
+        with h5py.File(tmp_path / "block.vtkhdf") as file:
+            assert file["run"].attrs["heading"] == heading[9:].strip()
+
+
+def test_a_drawing_is_in_the_file_with_its_body_on_the_left_and_follows_its_nodes(tmp_path):
+    """The die of the example: flat from -24 to 24, edges rounded by 4, 10 high, moved and turned."""
+    deck = tmp_path / "die.inp"
+    text = (EXAMPLES / "hot_die.inp").read_text().split("*END STEP")[0] + "*END STEP\n"
+    deck.write_text(text.replace("9000, 6", "9000, 6, 6, 1.E-4"))
+    status, said = run(deck)
+    assert status == 0, said
+    with Result(tmp_path / "die.vtkhdf") as result:
+        last = len(result.field_times) - 1
+        (((points, group),), (shown,)) = surfaces(result), lines_of(result, last)
+        _, displacement, rotation = motion_of(result, group, last)
+    np.testing.assert_allclose(points[[0, -1]], [[-28.0, 10.0], [28.0, 10.0]])
+    flat = np.abs(points[:, 0]) < 24.0
+    assert not points[flat, 1].any() and np.all(np.diff(points[:, 0]) >= -1e-12), "the body is above"
+    edge = points[points[:, 0] > 24.0]
+    edge = edge[edge[:, 1] < 4.0]
+    np.testing.assert_allclose(np.hypot(edge[:, 0] - 24.0, edge[:, 1] - 4.0), 4.0, rtol=1e-9)
+    assert displacement[1] == pytest.approx(-0.005) and rotation == pytest.approx(1e-4)
+    arms = points - [0.0, 10.0]
+    np.testing.assert_allclose(shown - points, displacement + 1e-4 * np.stack((-arms[:, 1], arms[:, 0]), 1),
+                               rtol=0.0, atol=1e-14)
+
+
 @pytest.mark.parametrize(("options", "unit", "shown"), [
     ('LOAD=TEMPERATURE_FACE,2, UNITS="mm MPa W K"', "mm", "U_y of TEMPERATURE_FACE (mm)"),
     ('LOAD=TEMPERATURE_FACE,11, UNITS="mm MPa W K"', "K", "Temperature of TEMPERATURE_FACE (K)"),
     ('UNITS="mm MPa W K"', "time", "Time"),
+    ('UNITS="mm MPa W K s"', "s", "Time (s)"),
     ('LOAD=TEMPERATURE_FACE,2', "length", "U_y of TEMPERATURE_FACE"),
     ('LOAD=TEMPERATURE_FACE,11', "temperature", "Temperature of TEMPERATURE_FACE"),
 ])

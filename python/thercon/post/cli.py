@@ -21,7 +21,7 @@ coordinate: x if it varies within every interface, else y, else the arc length s
 selects another one."""
 
 WITH_PROFILES = """A digitised figure is a CSV file with a heading. Columns: x (or s, with --along
-s) and any of pressure, shear, heat_flux; one called load separates curves of several loads. Empty
+s) and any of pressure, shear, heat_flux, slave_temperature, master_temperature; one called load separates curves of several loads. Empty
 fields are passed over, so curves need not share their x. Where friction has one sign, that of the
 digitised shear is immaterial. Columns of the tables written here are passed over. """ + OF_SEVERAL.format(
     "a line for each, from light to dark in the order of the stack, at one load")
@@ -170,6 +170,14 @@ def add_fields(picture):
         default="panel",
         help="one colour scale for a panel (default), or one for each group of bodies whose ranges "
         "differ tenfold",
+    )
+    picture.add_argument(
+        "--range",
+        nargs=2,
+        type=float,
+        metavar=("LOW", "HIGH"),
+        help="range of the colours, of panels with one unit (default: the values of 99 %% of the area; "
+        "of temperatures all)",
     )
     picture.add_argument(
         "--scale",

@@ -65,6 +65,8 @@ class Picture:
         heat = [(words, self.result.history.get(key)) for key, words in HEAT.items()]
         panels["heat"] = [*heat, ("through the contact", self.contact.get("heat_rate"))]
         panels = {name: seen(curves) for name, curves in panels.items()}
+        if self.result.is_of_heat:
+            panels = {name: panels[name] for name in ("temperature", "heat", *panels)}
         return {name: curves for name, curves in panels.items() if curves}
 
     def draw(self):
@@ -88,7 +90,7 @@ class Picture:
             axes.set_visible(False)
         for column in range(columns):
             lowest = [row for row in range(rows) if grid[row, column].get_visible()][-1]
-            grid[lowest, column].set_xlabel("Time")
+            grid[lowest, column].set_xlabel(self.result.units.label("Time", "time"))
             grid[lowest, column].tick_params(labelbottom=True)
         first = self.time[self.time > 0.0].min(initial=self.time[-1])
         if self.log and first < self.time[-1]:

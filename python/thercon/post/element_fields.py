@@ -14,6 +14,16 @@ def centres(cells, points):
     return found
 
 
+def areas(cells, points):
+    """Return the areas (m) of all elements between their corners, in the file's order."""
+    found = np.empty(cells.count)
+    for kind, group in cells.groups.items():
+        x, y = np.moveaxis(points[group[:, : CORNERS[kind]]], 2, 0)
+        turned = x * np.roll(y, -1, axis=1) - np.roll(x, -1, axis=1) * y
+        found[cells.members[kind]] = 0.5 * np.abs(turned.sum(axis=1))
+    return found
+
+
 def of_elements(cells, parts):
     """Return {element type: values} as one array over all elements, in the file's order."""
     found = np.empty(cells.count, dtype=next(iter(parts.values())).dtype)

@@ -1,5 +1,7 @@
 """Colours of the fields: which bodies share them, their levels and their bars."""
 
+from dataclasses import dataclass
+
 import matplotlib
 import numpy as np
 from matplotlib.colors import BoundaryNorm, ListedColormap
@@ -12,6 +14,8 @@ ROUNDING = 1e-9  # values that differ by this part of the largest magnitude are 
 NOTHING = 1e-6  # of the largest magnitude: what is smaller everywhere is 0
 UNSEEN = 1e-4  # of the range of temperatures: so far they may be beyond the colours
 UNIFORM = 1e-3  # of the largest magnitude: a smaller range has one colour
+BEYOND = 0.005  # of the area, at either end of a scale: so much may have values beyond its colours
+FAR = 1.5  # times the range of the others: values that extend it by less have colours too
 WIDE = 1.8  # width over height of models whose panels are one below the other
 
 
@@ -33,25 +37,41 @@ def scale_groups(near):
     return groups
 
 
-def limits(values, quantity, scale):
-    """Return levels for the colours: round numbers that cover the values of the window.
+def limits(values, quantity, scale, areas=None, given=None):
+    """Return levels for the colours: round numbers that cover the values of the window, or the range
+    `given`.
 
     Values whose range is below UNIFORM of the magnitude `scale` have two levels, about their middle.
 
     Stress peaks in re-entrant and clamped corners grow with every refinement and would leave one
-    colour for the rest: beyond the middle 99 % stresses share the colours at the ends.
+    colour for the rest: where they are FAR, colours of other values than temperatures cover 99 % of the
+    area alone, by the `areas` that they stand for (None: equal ones).
     """
-    values = values[np.isfinite(values)]
+    if given is not None:
+        levels = ticks(*given)
+        is_round = np.allclose(levels[[0, -1]], given, rtol=0.0, atol=1e-9 * np.ptp(levels))
+        return levels if is_round else np.linspace(*given, 11)
+    is_number = np.isfinite(values)
+    areas = np.ones(len(values)) if areas is None else areas
+    values, areas = values[is_number], areas[is_number]
     low, high = values.min(), values.max()
     if high - low <= UNIFORM * scale:
         middle = 0.5 * (low + high)
         middle = middle if abs(middle) > NOTHING * scale else 0.0
         return middle + np.array([-1.0, 1.0]) * (scale or 1.0)  # one band
     if quantity != "temperature":
-        ends = np.percentile(values, (0.5, 99.5))
-        low, high = ends if np.ptp(ends) > UNIFORM * scale else (low, high)
+        order = np.argsort(values)
+        below = np.cumsum(areas[order])
+        ends = values[order[np.searchsorted(below, np.array([BEYOND, 1.0 - BEYOND]) * below[-1])]]
+        if np.ptp(ends) > UNIFORM * scale and high - low > FAR * np.ptp(ends):
+            low, high = ends
     unseen = UNSEEN * (high - low) * (quantity == "temperature")
-    return MaxNLocator(nbins=14, steps=[1, 2, 2.5, 5, 10]).tick_values(low + unseen, high - unseen)
+    return ticks(low + unseen, high - unseen)
+
+
+def ticks(low, high):
+    """Return round numbers, about a dozen, that cover a range."""
+    return MaxNLocator(nbins=14, steps=[1, 2, 2.5, 5, 10]).tick_values(low, high)
 
 
 def settle(values, levels, scale):
@@ -82,10 +102,43 @@ def colours_of(quantity, levels):
     return ListedColormap(matplotlib.colormaps[name](shades)), BoundaryNorm(levels, count)
 
 
+@dataclass
+class Layer:
+    """What a panel is filled with, in one scale of colours."""
+
+    filled: object
+    levels: np.ndarray
+    ends: tuple  # smallest and largest value at nodes, or of elements, that are shown
+    bodies: list  # whose colours they are, where other bodies have others
+    kind: str  # of colours and unit: scales of one kind can be shared
+
+    @property
+    def beyond(self):
+        """Whether there are values below the colours and above them, more than UNSEEN."""
+        return overflow(self.ends, self.levels)
+
+    def beyond_words(self):
+        """Return how far values lie beyond the colours, in words; nothing where none do."""
+        below, above = self.beyond
+        low, high = (f"{end:.4g}".replace("-", "\N{MINUS SIGN}") for end in self.ends)
+        if below and above:
+            return f"{low} to {high}"
+        return f"down to {low}" if below else f"up to {high}" if above else ""
+
+    def has_scale_of(self, other):
+        """Whether another layer can be read by the colour bar of this one."""
+        return (self.kind == other.kind and not self.bodies and not other.bodies
+                and np.array_equal(self.levels, other.levels))
+
+
 def overflow(values, levels):
-    """Return which ends of the colour bar values run past."""
-    slack = 1e-6 * (levels[-1] - levels[0])
-    below, above = values.min() < levels[0] - slack, values.max() > levels[-1] + slack
+    """Return whether values lie below the first and above the last level."""
+    slack = UNSEEN * (levels[-1] - levels[0])
+    return bool(np.min(values) < levels[0] - slack), bool(np.max(values) > levels[-1] + slack)
+
+
+def extend_words(below, above):
+    """Return at which ends a colour bar has arrows, as Matplotlib names them."""
     return [["neither", "max"], ["min", "both"]][int(below)][int(above)]
 
 
@@ -107,20 +160,48 @@ class LevelLocator(Locator):
         return self.levels[steps % every == 0]
 
 
-def draw_bar(axes, filled, levels, extend, bodies):
-    """Draw a colour bar of a panel beside it, below wide panels, with arrows at the ends that values
-    run past; it names `bodies`."""
+def draw_bars(panels, layers):
+    """Draw the colour bars of panels with their `layers`: neighbours in a row or column whose scales
+    are one share a bar."""
+    grid = panels[0].get_subplotspec().get_gridspec()
+    first = 0
+    while first < len(panels):
+        last = first + 1
+        while last < len(panels) and (grid.ncols == 1 or last % grid.ncols) and all(
+                len(each) == 1 and layers[first][0].has_scale_of(each[0])
+                for each in (layers[first], layers[last])):
+            last += 1
+        for number in range(len(layers[first])):
+            draw_bar(panels[first:last], [each[number] for each in layers[first:last]])
+        first = last
+
+
+def draw_bar(panels, layers):
+    """Draw a colour bar beside panels, below wide ones, with arrows at the ends that values run past,
+    and words of how far; it names the bodies whose it is."""
+    axes, levels = panels[0], layers[0].levels
     width, height = np.ptp(axes.get_xlim()), np.ptp(axes.get_ylim())
     is_wide = width > WIDE * height
-    across = 0.03 * max(width, height) / (height if is_wide else width)
-    bar = axes.figure.colorbar(filled, ax=axes, location="bottom" if is_wide else "right", extend=extend,
-                               fraction=max(0.05, across), pad=0.02, aspect=30, shrink=0.9)
+    across = 0.03 * max(width, height) / (height if is_wide else width) / len(panels)
+    below, above = np.any([layer.beyond for layer in layers], axis=0)
+    bar = axes.figure.colorbar(layers[0].filled, ax=panels, location="bottom" if is_wide else "right",
+                               extend=extend_words(below, above), fraction=max(0.05, across), pad=0.02,
+                               aspect=30, shrink=0.9)
     bar.ax.tick_params(direction="out", width=0.4, length=2, labelsize=7)
     bar.outline.set_linewidth(0.4)
     bar.set_ticks(LevelLocator(levels))
     if len(levels) == 2:
         middle = 0.5 * (levels[0] + levels[1])
         bar.set_ticks([middle], labels=[f"{middle:.4g}".replace("-", "\N{MINUS SIGN}")])
-    if len(bodies):
-        words = ", ".join(str(body) for body in sorted(bodies))
-        bar.set_label(f"bod{'y' if len(bodies) == 1 else 'ies'} {words}", fontsize=7)
+    words = [bar_words(layers, [axes.get_title(loc="left")[:4] for axes in panels])]
+    if layers[0].bodies:
+        names = ", ".join(str(body) for body in sorted(layers[0].bodies))
+        words.insert(0, f"bod{'y' if len(layers[0].bodies) == 1 else 'ies'} {names}")
+    bar.set_label(("; " if is_wide else "\n").join(filter(None, words)), fontsize=7)
+
+
+def bar_words(layers, letters):
+    """Return how far values lie beyond the colours of a bar, of several panels with their letters."""
+    told = [(letter, layer.beyond_words()) for letter, layer in zip(letters, layers)]
+    told = [f"{letter}{words}" if len(layers) > 1 else words for letter, words in told if words]
+    return f"values beyond: {', '.join(told)}" if told else ""

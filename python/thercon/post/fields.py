@@ -13,9 +13,12 @@ from .errors import UserError
 from .field_colours import (
     NOTHING,
     ROUNDING,
+    SIGNED,
     WIDE,
+    Layer,
     colours_of,
-    draw_bar,
+    draw_bars,
+    extend_words,
     limits,
     overflow,
     scale_groups,
@@ -23,6 +26,7 @@ from .field_colours import (
 )
 from .fine_mesh import refine
 from .result import CELL_FIELDS, FIELD_SOURCES, MODE, OPEN
+from .rigid_surfaces import draw_rigid, lines_of, with_lines
 from .style import plt
 
 USUAL = {False: ("temperature", "von_mises", "yy"), True: ("temperature", "radial", "hoop")}
@@ -65,6 +69,7 @@ def draw_row(result, row, options):
     """Draw one picture: a panel for each quantity, at the increment in `row` of /history."""
     step = result.field_row(row)
     fields = read_fields(result, step, options.quantity)
+    check_range(options.range, fields)
     displacement = result.point_data("mode_displacement" if MODE in fields else "displacement", step)
     factor = options.scale * (mode_factor(result.cells, displacement) if MODE in fields else 1.0)
     moved = result.cells.points.copy()
@@ -74,28 +79,29 @@ def draw_row(result, row, options):
     fine = refine(result.cells, pieces)
     at = fine.values(moved)
     grid = Triangulation(*at.T, fine.triangles)
-    window = mesh.bounds_of(moved[result.cells.used])
+    lines = lines_of(result, step if displacement is not None else None, factor)
+    window = with_lines(mesh.bounds_of(moved[result.cells.used]), lines)
     if options.region == "contact":
         window = mesh.contact_window(result.contacts(), result.cells, moved)
     figure, panels = layout(len(fields), window)
-    inside = np.all((at >= window[0]) & (at <= window[1]), axis=1)
+    layers = []
     for axes, letter, (quantity, given) in zip(panels, ascii_lowercase, fields.items()):
         mesh.frame(axes, window, result.units, cut=options.region == "contact")
-        scale = magnitude(result, quantity, step)
+        look = quantity, magnitude(result, quantity, step), options
         if quantity in CELL_FIELDS:
-            draw_elements(axes, result.cells, moved, given, (quantity, scale, options.colours), window)
+            layers.append(draw_elements(axes, result.cells, moved, given, look, window))
         else:
-            values = fine.values(given.astype(float))
-            if quantity in ("von_mises", "plastic_strain", "creep_strain"):
-                values = np.maximum(values, 0.0)  # quadratic interpolation can undershoot
-            draw_points(axes, grid, fine, values, (quantity, scale, options.colours), inside)
+            layers.append(draw_points(axes, grid, fine, given.astype(float), look,
+                                      inside_of(result.cells, moved, at, window)))
         draw_lines(axes, result.cells, moved)
+        draw_rigid(axes, lines)
         outline_plastic_zone(axes, grid, fine, result.point_data("equivalent_plastic_strain", step))
         draw_front(axes, grid, fine, result.point_data("solid_fraction", step))
         title = result.units.label(*TITLES[quantity])
         if figure.axes[0].get_subplotspec().get_gridspec().ncols > 1:  # room for symbol and unit
             title = re.sub(r" (?=[$(]|of )", "\n", title, count=1)
         style.panel_title(axes, title, letter if len(fields) > 1 else "")
+    draw_bars(panels.tolist(), layers)
     share_labels(panels)
     figure.supxlabel(words_below(result, row, factor, MODE in fields), fontsize=8.5)
     return style.write(
@@ -185,6 +191,8 @@ def name_of(result, row, options):
         parts.append("contact")
     if options.scale != 1.0:
         parts += ["scale", options.scale]
+    if options.range:
+        parts += ["range", *options.range]
     return style.file_name(result, "fields", *parts)
 
 
@@ -210,6 +218,14 @@ def read_fields(result, step, quantities):
     if not chosen:
         raise UserError(f"{result.path}: no temperature or stress field at this load")
     return {quantity: there[quantity] for quantity in chosen}
+
+
+def check_range(given, fields):
+    """Refuse a range of colours that falls, or of panels with several units."""
+    if given and not given[0] < given[1]:
+        raise UserError(f"--range {given[0]:g} {given[1]:g}: the first must be below the second")
+    if given and len({TITLES[quantity][1] for quantity in fields}) > 1:
+        raise UserError(f"--range is of one unit: choose of {', '.join(fields)} with --quantity")
 
 
 def tells_nothing(result, there, step):
@@ -264,41 +280,68 @@ def share_labels(panels):
             axes.tick_params(labelbottom=False)
 
 
-def draw_elements(axes, cells, moved, values, look, window):
-    """Fill one panel element by element, with a colour bar for each group of bodies.
+def inside_of(cells, moved, at, window):
+    """Return which fine points are in a window, and the nodes of each body that are."""
+    inside, near = (np.all((places >= window[0]) & (places <= window[1]), axis=1)
+                    for places in (at, moved))
+    nodes = {}
+    for kind, group in cells.groups.items():
+        for body in np.unique(cells.bodies[kind]):
+            own = np.unique(group[cells.bodies[kind] == body])
+            nodes[body] = np.union1d(nodes.get(body, own), own)
+    return inside, {body: own[near[own]] for body, own in nodes.items()}
 
-    `look` is the quantity, its magnitude and whose colours are asked for."""
-    quantity, scale, whose = look
+
+def draw_elements(axes, cells, moved, values, look, window):
+    """Fill one panel element by element; return its layers, one for each group of bodies.
+
+    `look` is the quantity, its magnitude and the options, of which colours and range count here."""
+    quantity, scale, options = look
     bodies = element_fields.of_elements(cells, cells.bodies)
+    areas = element_fields.areas(cells, moved)
     inside = element_fields.in_window(cells, moved, window)
     near = {body: values[inside & (bodies == body)] for body in np.unique(bodies)}
-    groups = scale_groups(near) if whose == "body" else [list(near)]
+    groups = scale_groups(near) if options.colours == "body" else [list(near)]
+    layers = []
     for group in groups:
         own = np.where(np.isin(bodies, group), values, np.nan)
-        levels = limits(own[inside], quantity, scale)
-        extend = overflow(own[np.isfinite(own)], levels)
+        levels = limits(own[inside], quantity, scale, areas[inside], options.range)
         colours, norm = colours_of(quantity, levels)
         filled = element_fields.fill(axes, cells, moved, own, colours, norm)
-        draw_bar(axes, filled, levels, extend, group if len(groups) > 1 else ())
+        shown = own[inside & np.isfinite(own)]
+        layers.append(layer_of(filled, levels, shown, group if len(groups) > 1 else (), quantity))
+    return layers
 
 
-def draw_points(axes, grid, fine, values, look, inside):
-    """Fill one panel with colours between thin lines of equal value, with a colour bar for each
-    group of bodies. `look` is as above, `inside` are the fine points in the window."""
-    quantity, scale, whose = look
+def draw_points(axes, grid, fine, given, look, where):
+    """Fill one panel with colours between thin lines of equal value; return its layers, one for each
+    group of bodies. `given` are values at nodes; `look` is as above, `where` what `inside_of` returns."""
+    (quantity, scale, options), (inside, nodes) = look, where
+    values = fine.values(given)
+    if quantity in ("von_mises", "plastic_strain", "creep_strain"):
+        values = np.maximum(values, 0.0)  # quadratic interpolation can undershoot
     broken = ~np.isfinite(values)
     members = {body: fine.triangles[fine.bodies == body] for body in np.unique(fine.bodies)}
     members = {body: np.unique(triangles) for body, triangles in members.items()}
-    near = {body: values[points[inside[points]]] for body, points in members.items()}
-    groups = scale_groups(near) if whose == "body" else [list(near)]
+    members = {body: points[inside[points]] for body, points in members.items()}
+    areas = fine.areas(np.column_stack((grid.x, grid.y)))
+    groups = scale_groups({body: values[points] for body, points in members.items()}) \
+        if options.colours == "body" else [list(members)]
+    layers = []
     for group in groups:
-        levels = limits(np.concatenate([near[body] for body in group]), quantity, scale)
+        near = np.concatenate([members[body] for body in group])
+        levels = limits(values[near], quantity, scale, areas[near], options.range)
         settled = settle(np.where(broken, levels[0], values), levels, scale)
         hidden = ~np.isin(fine.bodies, group) | broken[grid.triangles].any(axis=1)
         if hidden.all():
             continue
         grid.set_mask(hidden)
-        extend = overflow(settled[np.unique(grid.triangles[~hidden])], levels)
+        shown = given[np.concatenate([nodes[body] for body in group])]
+        shown = shown[np.isfinite(shown)]
+        below, above = overflow(shown, levels) if shown.size else (False, False)
+        # What is interpolated beyond all nodes, or out of sight, has the colours at the ends.
+        settled = np.clip(settled, -np.inf if below else levels[0], np.inf if above else levels[-1])
+        extend = extend_words(below, above)
         colours, norm = colours_of(quantity, levels)
         filled = axes.tricontourf(grid, settled, levels=levels, cmap=colours, norm=norm, extend=extend)
         for bands in getattr(filled, "collections", [filled]):
@@ -306,7 +349,15 @@ def draw_points(axes, grid, fine, values, look, inside):
         lines = {"colors": "black", "linewidths": 0.15, "linestyles": "solid"}
         if len(levels) > 2:
             axes.tricontour(grid, settled, levels=levels[1:-1], **lines)
-        draw_bar(axes, filled, levels, extend, group if len(groups) > 1 else ())
+        layers.append(layer_of(filled, levels, shown, group if len(groups) > 1 else (), quantity))
+    return layers
+
+
+def layer_of(filled, levels, shown, bodies, quantity):
+    """Return the layer of a panel; `shown` are the values at nodes or of elements in it."""
+    ends = (shown.min(), shown.max()) if shown.size and len(levels) > 2 else levels[[0, -1]]
+    kind = f"{TITLES[quantity][1]} {'signed' if quantity in SIGNED else quantity}"
+    return Layer(filled, levels, tuple(ends), list(bodies), kind)
 
 
 def draw_lines(axes, cells, moved):

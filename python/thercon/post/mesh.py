@@ -7,6 +7,7 @@ from matplotlib.patches import ConnectionPatch, Patch, Rectangle
 
 from . import style
 from .cells import curves, outlines
+from .rigid_surfaces import draw_rigid, lines_of, with_lines
 from .style import plt
 
 SMALLER = 0.8  # of the model: a larger close-up would show nothing new
@@ -21,7 +22,8 @@ def draw(result, options):
     """Draw the mesh of `result`; return the files written."""
     cells = result.cells
     contacts = result.contacts() if result.contact_names else []
-    model = bounds_of(cells.points[cells.used])
+    lines = lines_of(result, None)
+    model = with_lines(bounds_of(cells.points[cells.used]), lines)
     near = contact_window(contacts, cells, cells.points) if contacts else model
     has_close_up = np.max(np.ptp(near, axis=0)) < SMALLER * np.max(np.ptp(model, axis=0))
     if has_close_up:
@@ -37,12 +39,13 @@ def draw(result, options):
         for contact in contacts:
             draw_faces(axes, cells, result.faces(contact), contact, nodes)
         frame(axes, window, result.units, cut=nodes and has_close_up)
+        draw_rigid(axes, lines)
     if has_close_up:
         mark_window(whole, close, near)
         style.panel_title(whole, "", "a")
         style.panel_title(close, "", "b")
     figure.legend(
-        handles=legend_handles(cells, contacts),
+        handles=legend_handles(cells, contacts, lines),
         **style.BELOW,
         ncols=4,
         columnspacing=1.4,
@@ -174,8 +177,9 @@ def body_names(cells):
     return sorted({int(b) for bodies in cells.bodies.values() for b in bodies})
 
 
-def legend_handles(cells, contacts):
-    """Return the legend's entries: bodies and, where there is contact, the two faces."""
+def legend_handles(cells, contacts, lines):
+    """Return the legend's entries: bodies, drawings of rigid ones and, where there is contact, the two
+    faces; of a drawing no master face is marked."""
     handles = [
         Patch(
             facecolor=style.BODY_TINTS[k % len(style.BODY_TINTS)],
@@ -185,12 +189,18 @@ def legend_handles(cells, contacts):
         for k, name in enumerate(body_names(cells))
     ]
     if contacts:
+        looks = [("slave", SLAVE), ("master", MASTER)]
+        masters = np.concatenate([contact["master_node"] for contact in contacts])
+        if lines and not np.isin(masters, cells.node_id[cells.used]).any():
+            looks.pop()
         is_marked = any(len(contact["slave_node"]) <= MOST_MARKED for contact in contacts)
         plain = {} if is_marked else {"marker": None}
         handles += [
-            Line2D([], [], mfc="white", label=f"contact face, {name}", **(looks | plain))
-            for name, looks in (("slave", SLAVE), ("master", MASTER))
+            Line2D([], [], mfc="white", label=f"contact face, {name}", **(look | plain))
+            for name, look in looks
         ]
+    if lines:
+        handles.append(Line2D([], [], color="black", lw=1.1, label="rigid surface"))
     return handles
 
 

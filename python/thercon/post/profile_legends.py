@@ -13,11 +13,14 @@ EDGES = {
 QUANTITY_LINES = {
     "pressure": "solid",
     "shear": (0, (4.5, 1.5)),
+    "slave_temperature": "solid",
+    "master_temperature": (0, (4.5, 1.5)),
     "mu_p": (0, (1.2, 1.2)),
     "heat_flux": "solid",
     "wear_slave": "solid",
     "wear_master": "solid",
 }
+SECOND = ("shear", "master_temperature")  # curves of a panel whose marks are hollow
 MU_P_WIDTH = 1.4  # its dots are seen where friction lies on them
 
 COLUMNS = 2  # of the legend
@@ -49,8 +52,10 @@ def quantity_handles(picture, quantities):
     """Return the legend's entries for the quantities of one panel."""
     tau = r"$\tau$" if picture.sign > 0.0 else r"$-\tau$"
     bound = r"$\pm\mu p$" if picture.two_signs() else r"$\mu p$"
-    names = {"pressure": "pressure $p$", "shear": f"friction {tau}", "mu_p": bound}
-    markers = {} if picture.several else {"pressure": "o", "shear": "s"}
+    names = {"pressure": "pressure $p$", "shear": f"friction {tau}", "mu_p": bound,
+             "slave_temperature": "slave", "master_temperature": "master"}
+    markers = {} if picture.several else {
+        quantity: "s" if quantity in SECOND else "o" for quantity in quantities if quantity != "mu_p"}
     return [
         Line2D(
             [],
@@ -59,7 +64,7 @@ def quantity_handles(picture, quantities):
             ls=QUANTITY_LINES[quantity],
             **({"lw": MU_P_WIDTH} if quantity == "mu_p" else {}),
             marker=markers.get(quantity),
-            mfc="white" if quantity == "shear" else "black",
+            mfc="white" if quantity in SECOND else "black",
             label=names[quantity],
         )
         for quantity in quantities
@@ -87,7 +92,8 @@ def load_texts(picture):
     result, found = picture.result, []
     for load, time in zip(*(result.history[key][picture.rows] for key in ("load", "time"))):
         words = result.units.short_load(result.load_label, load)
-        found.append(words if result.load_label == "time" else f"{words}, time {time:g}")
+        time_words = result.units.time_value(time)
+        found.append(words if result.load_label == "time" else f"{words}, {time_words}")
     return found
 
 

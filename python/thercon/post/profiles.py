@@ -4,13 +4,14 @@ import numpy as np
 
 from . import profile_legends, style
 from .overlay import axis_words, file_parts, read_overlays
-from .profile_legends import EDGES, QUANTITY_LINES
+from .profile_legends import EDGES, QUANTITY_LINES, SECOND
 from .errors import UserError
 from .result import OPEN, UNJUDGED
 from .style import plt
 from .tables import stack_tables
 
-CURVES = ("pressure", "shear", "heat_flux", "wear_slave", "wear_master")
+FACES = ("slave_temperature", "master_temperature")
+CURVES = ("pressure", "shear", *FACES, "heat_flux", "wear_slave", "wear_master")
 TRACTIONS = ("pressure", "shear", "mu_p")   # end at the sharpened edges of contact
 WORN = {"wear_slave": "slave", "wear_master": "master"}
 PASSED_OVER = ("x", "y", "s", "contact", "increment", "load", "status", "mu_p")
@@ -63,8 +64,8 @@ class Picture:
         if self.overlap:
             return float(self.coordinate.min()), float(self.coordinate.max())
         if not self.slides:
-            return self.contact.window(self.coordinate, self.rows, with_heat=True)
-        ends = [self.contact.window(self.at(row), [row], with_heat=True) for row in self.rows]
+            return self.contact.window(self.coordinate, self.rows, of_loads=True)
+        ends = [self.contact.window(self.at(row), [row], of_loads=True) for row in self.rows]
         return min(low for low, _ in ends), max(high for _, high in ends)
 
     def draw(self, overlays):
@@ -86,7 +87,7 @@ class Picture:
                     line = QUANTITY_LINES[quantity]
                     drawn.append(overlay.plot(axes, self.along, quantity, line, magnitude=size))
             axes.set_ylabel(self.ordinate(quantities))
-            scale(axes, np.concatenate(drawn))
+            scale(axes, np.concatenate(drawn), from_zero=quantities[0] not in FACES)
         profile_legends.add(self, panels, kinds, overlays)
         units = self.result.units
         unit = units.names.get("length", "")
@@ -111,6 +112,9 @@ class Picture:
         if traction is not None and np.any(traction[self.rows] != 0.0):
             friction = ["shear"] if self.contact.friction is None else ["shear", "mu_p"]
         kinds = [["pressure", *friction]]
+        faces = [name for name in FACES if self.contact.get(name) is not None]
+        if faces and not np.any(self.contact["pressure"][self.rows]):
+            kinds = [faces]
         if self.several and friction:
             kinds = [["pressure"], friction]
         worn = [[name] for name in WORN if np.any(self.contact.get(name, 0.0) != 0.0)]
@@ -140,8 +144,9 @@ class Picture:
         drawn = np.concatenate((values[near], -values[near])) if both else values[near]
         looks = {"color": self.colours[number], "linestyle": QUANTITY_LINES[quantity]}
         if quantity != "mu_p" and not self.overlap:  # the marks of some would hide the others
-            marker = "s" if quantity == "shear" and len(self.rows) == 1 else style.marker(number)
-            looks["mfc"] = "white" if quantity == "shear" else looks["color"]
+            is_second = quantity in SECOND
+            marker = "s" if is_second and len(self.rows) == 1 else style.marker(number)
+            looks["mfc"] = "white" if is_second else looks["color"]
             symbols = looks | {"linestyle": "none", "marker": marker}
             axes.plot(at[shown], values[shown], zorder=3, clip_on=False, **symbols)
         if quantity == "mu_p":
@@ -206,13 +211,20 @@ class Picture:
             return units.label("Heat flux $q$", "flux")
         if quantities[0] in WORN:
             return units.label(f"Wear of the {WORN[quantities[0]]}", "length")
+        if quantities[0] in FACES:
+            return units.label("Temperature of the faces", "temperature")
         if quantities == ["pressure"]:
             return units.label("Pressure $p$", "stress")
         return units.label("Contact traction" if "pressure" in quantities else "Friction", "stress")
 
 
-def scale(axes, drawn):
-    """Set the ordinate's range to the values drawn, from zero where nothing is negative."""
+def scale(axes, drawn, from_zero=True):
+    """Set the ordinate's range to the values drawn, if asked from zero where nothing is negative."""
+    if not from_zero:
+        low, high = np.nanmin(drawn), np.nanmax(drawn)
+        room = 0.06 * (high - low) if high - low > 1e-6 * max(abs(low), abs(high)) else 0.5
+        axes.set_ylim(low - room, high + 2 * room)
+        return
     low, high = np.nanmin(drawn, initial=0.0), np.nanmax(drawn, initial=0.0)
     room = 0.06 * ((high - low) or 1.0)
     if -low <= 0.01 * high:

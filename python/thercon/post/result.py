@@ -53,7 +53,8 @@ EDGES = ("edge_contact", "edge_stick", "edges_contact", "edges_stick")
 PATTERN = "*"  # in names of contacts: any characters
 NOISE = 1e-9  # of what it is beside: smaller values are rounding
 LOADS_TO = 1e-12  # of the largest load: loads are sums of at most some thousand increments
-LEFT_OUT = 0.01  # of the heat that crosses: as much may be outside of pictures that show heat
+LEFT_OUT = 0.01  # of the force and of the heat: as much may be outside of a profile
+TOLD = 1e-4  # of force or heat: smaller shares are not told
 UNJUDGED = "inside a step: the mesh is not refined for this time"
 MARKED = "dotted lines are ends of steps; the mesh is refined for these alone"
 ROUND = ("cpu_seconds", "unknowns", "elements", "increments")
@@ -185,15 +186,17 @@ class Contact:
         moved = np.interp(edge, self.data["s"], coordinate)
         return np.where(np.isnan(edge), np.nan, moved)
 
-    def window(self, coordinate, rows=slice(None), with_heat=False):
-        """Return the range that pictures show: the pairs that close at these increments, with those
-        that carry the heat if that is drawn, and somewhat more; the whole face where none does."""
+    def window(self, coordinate, rows=slice(None), of_loads=False):
+        """Return the range that pictures show, and somewhat more: the pairs that close at these
+        increments or, if asked, those that carry all but LEFT_OUT of force and heat; the whole face
+        where there are none."""
         low, high = map(float, coordinate[[0, -1]])
         shown = (self.data["status"][rows] != OPEN).any(axis=0)
-        if with_heat:
-            shares = self.heat_shares(rows)
-            before, behind = shares.cumsum(axis=1), shares[:, ::-1].cumsum(axis=1)[:, ::-1]
-            shown |= (np.minimum(before, behind) > 0.5 * LEFT_OUT).any(axis=0)
+        if of_loads:
+            shown[:] = False
+            for shares in (self.force_shares(rows), self.heat_shares(rows)):
+                before, behind = shares.cumsum(axis=1), shares[:, ::-1].cumsum(axis=1)[:, ::-1]
+                shown |= (np.minimum(before, behind) > 0.5 * LEFT_OUT).any(axis=0)
         if not shown.any():
             return low, high
         first, last = map(float, coordinate[shown][[0, -1]])
@@ -207,24 +210,42 @@ class Contact:
             np.abs(np.nan_to_num(self.data.get(key, np.zeros(self.data["status"].shape))[rows]))
             for key in ("heat_flux", "conductance", "slave_temperature")
         )
-        heat = np.where(flux > NOISE * conductance * temperature, flux, 0.0) * self.data["weight"]
-        whole = heat.sum(axis=1, keepdims=True)
-        return np.divide(heat, whole, out=np.zeros_like(heat), where=whole > 0.0)
+        return shares_of(np.where(flux > NOISE * conductance * temperature, flux, 0.0)
+                         * self.data["weight"])
+
+    def force_shares(self, rows):
+        """Return the share of each pair in the normal force, (increments, pairs); zero where there
+        is none."""
+        return shares_of(np.nan_to_num(self.data["pressure"][rows]) * self.data["weight"])
 
     def part_words(self, coordinate, window, unit, rows=slice(None)):
-        """Return what a window leaves out of the face, in words; nothing where it shows all."""
+        """Return what a window leaves out of the face, and what that carries, in words; nothing where
+        it shows all."""
         outside = (coordinate < window[0]) | (coordinate > window[1])
         if not outside.any():
             return ""
+        shares = [share_words(shares[:, outside].sum(axis=1).max()) for shares in
+                  (self.force_shares(rows), self.heat_shares(rows))]
+        carried = [f"{words} of the {of}" for words, of in zip(shares, ("force", "heat")) if words]
         is_open = np.all(self.data["status"][rows][:, outside] == OPEN)
         ends = " to ".join(place_words(end, coordinate) for end in coordinate[[0, -1]])
         face = f"{ends} {unit}".rstrip().replace("-", "\N{MINUS SIGN}")
-        words = f"The face runs from {face}; "
-        if not is_open:
-            return f"{words}part of it is not shown"
-        heat = float(self.heat_shares(rows)[:, outside].sum(axis=1).max())
-        crosses = f",\nand up to {100.0 * heat:.2g} % of the heat crosses it" * (heat > LEFT_OUT)
-        return f"{words}the part not shown is open{crosses}"
+        words = f"The face runs from {face}; the part not shown"
+        if is_open:
+            crosses = f",\nand {carried[0]} crosses it" if carried else ""
+            return f"{words} is open{crosses}"
+        return f"{words}\ncarries {' and '.join(carried) or 'nothing'}"
+
+
+def shares_of(loads):
+    """Return each of loads (increments, pairs) over the sum of its increment; zero where that is."""
+    whole = loads.sum(axis=1, keepdims=True)
+    return np.divide(loads, whole, out=np.zeros_like(loads), where=whole > 0.0)
+
+
+def share_words(share):
+    """Return a share in words; nothing where it is too small to tell."""
+    return f"up to {100.0 * share:.2g} %" if share > TOLD else ""
 
 
 class Result:
@@ -383,6 +404,16 @@ class Result:
         return stresses.is_axisymmetric(self.deck)
 
     @cached_property
+    def is_of_heat(self):
+        """Whether the run is of heat alone: it has temperatures, and no contact carries a force."""
+        steps = len(self.field_times)
+        has_stress = steps and self.source("von_mises", steps - 1) is not None
+        forces = [np.nanmax(contact["pressure"], initial=0.0) for contact in self.contacts()] \
+            if self.contact_names else []
+        has_force = has_stress if not forces else max(forces) > 0.0
+        return bool(steps and self.source("temperature", steps - 1) is not None and not has_force)
+
+    @cached_property
     def given_gaps(self):
         """The first keyword of the deck that gives gaps that the mesh does not have; empty where
         there is none."""
@@ -490,7 +521,7 @@ class Result:
         """Return load and time of a row of /history in words, and what is not known there."""
         words = self.units.load_value(self.load_label, float(self.history["load"][row]))
         if self.load_label != "time":
-            words += f", time {float(self.history['time'][row]):g}"
+            words += f", {self.units.time_value(float(self.history['time'][row]))}"
         factor = float(self.load_factors[row])
         words += "" if np.isnan(factor) else f", load factor {factor:g}"
         return words if self.judged[row] else f"{words}\n({UNJUDGED})"

@@ -1,17 +1,18 @@
 """Units and labels of the axes."""
 
-UNIT_NAMES = ("length", "stress", "power", "temperature")
+UNIT_NAMES = ("length", "stress", "power", "temperature", "time")
 
 
 class Units:
     """The user's own units."""
 
     def __init__(self, names, load="time"):
-        """Take {length, stress, power, temperature: unit}; empty texts give no unit. The unit of the
-        load axis is one of these, or the quantity itself where it has no unit."""
+        """Take {length, stress, power, temperature, time: unit}; empty texts give no unit. The unit of
+        the load axis is one of these, or the quantity itself where it has no unit."""
         self.names = {quantity: plain_unit(unit) for quantity, unit in names.items() if unit}
-        self.load = next((quantity for quantity in ("temperature", "length")
-                          if plain_unit(load) in (quantity, self.names.get(quantity))), None)
+        self.load = next((quantity for quantity in ("temperature", "length", "time")
+                          if plain_unit(load) in (quantity, self.names.get(quantity))
+                          and (quantity != "time" or quantity in self.names)), None)
         if {"power", "length"} <= set(self.names):
             self.names["flux"] = f"{self.names['power']}/{self.names['length']}$^2$"
         if {"stress", "length"} <= set(self.names):
@@ -35,6 +36,10 @@ class Units:
         if self.load is None:
             return self.load_value(label, value)
         return f"{value:g} {self.load_unit()}".strip()
+
+    def time_value(self, time):
+        """Return a time in words, such as "time 60 s"."""
+        return f"time {time:g} {self.names.get('time', '')}".rstrip()
 
     def load_unit(self):
         """Return the unit of the load axis, or an empty text."""

@@ -117,7 +117,8 @@ class Picture:
         self.rising = rising
         # A load that turns would draw loading and unloading over each other.
         self.abscissa = load if rising else result.history["time"]
-        self.abscissa_label = result.units.load_label(result.load_label) if rising else "Time"
+        self.abscissa_label = (result.units.load_label(result.load_label) if rising
+                               else result.units.label("Time", "time"))
         least = int(np.argmin(self.abscissa))
         if log and self.abscissa[least] <= 0.0:
             raise UserError(
@@ -229,18 +230,23 @@ class Picture:
                 axes.pcolormesh(load, places, status.T, cmap=ListedColormap(FILLS), rasterized=True,
                                 **looks)
                 continue
-            alike = (status == status[:, :1]).all(axis=1) & (status[:, 0] != OPEN)
-            if not alike.any():
+            alike = self.alike(piece)
+            if not np.any(alike):
                 continue
             axes.pcolormesh(
                 load,
                 between(self.coordinate[piece])[[0, -1]],
-                np.where(alike, status[:, 0], OPEN)[None, :],
+                alike[None, :],
                 cmap=ListedColormap(TINTS),
                 linewidth=0.15,
                 edgecolors="face",  # no light seams
                 **looks,
             )
+
+    def alike(self, piece):
+        """Return the state that all points of a piece have at each increment; OPEN where they differ."""
+        status = self.status[:, piece]
+        return np.where((status == status[:, :1]).all(axis=1), status[:, 0], OPEN)
 
     def draw_states(self, axes):
         """Draw the raw state of every pair as a small mark behind the curves."""
@@ -277,15 +283,25 @@ class Picture:
             for state, marker, options in state_marks()
             if np.any(self.status == state)
         ]
+        tinted = [self.alike(piece) for piece in self.contact.pieces]
+        handles += [
+            Patch(facecolor=TINTS[state], edgecolor=style.GREY, lw=0.4,
+                  label=f"all contact points {self.state_words(state)}")
+            for state in (SLIP, STICK)
+            if np.any([each == state for each in tinted])
+        ]
         for overlay in overlays:
             handles += overlay.handles(CURVE_NAMES, LINES)
         return handles
 
     def point_words(self, state):
         """Return the legend's words for a contact point in a state."""
-        words = {"open": "open", "contact": "closed"}
+        return f"contact point {self.state_words(state)}"
+
+    def state_words(self, state):
+        """Return a state in words, such as "in slip"."""
         name = self.names[state][1]
-        return f"contact point {words.get(name, 'in ' + name)}"
+        return {"open": "open", "contact": "closed"}.get(name, f"in {name}")
 
     def table(self):
         """Return the curves as columns: edges on the axis of the picture, and as arc length; None of

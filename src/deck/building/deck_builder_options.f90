@@ -32,12 +32,15 @@ contains
       deck%model%units%stress = ''
       deck%model%units%power = ''
       deck%model%units%temperature = ''
+      deck%model%units%time = ''
       deck%model%solver = solver_by_size
       do k = 1, size(deck%cards%keywords)
          associate (card => deck%cards%keywords(k))
             select case (card%name)
             case ('HEADING')
-               if (size(card%data) == 0 .or. len(deck%model%heading) > 0) cycle
+               ! That of a file that is included names a mesh.
+               if (size(card%data) == 0 .or. len(deck%model%heading) > 0 .or. &
+                  deck%source%file(card%place%image) /= 1) cycle
                deck%model%heading = card%data(1)%fields(1)%text
             case ('OPTIONS')
                call build_option_card(card, deck)
@@ -106,30 +109,31 @@ contains
       deck%load_place = card%place_of('LOAD')
    end subroutine build_option_card
 
-   !> UNITS="length stress power temperature".
+   !> UNITS="length stress power temperature time", the last of which may be left out.
    subroutine build_units(card, deck)
       type(keyword_card_type), intent(in) :: card
       type(deck_type), intent(inout) :: deck
       character(:), allocatable :: rest
-      character(len(card%text('UNITS'))) :: words(4)
+      character(len(card%text('UNITS'))) :: words(5)
       integer :: i, blank
 
       rest = trim(adjustl(card%text('UNITS')))
       words = ''
-      do i = 1, 4
+      do i = 1, size(words)
          blank = index(rest//' ', ' ')
          words(i) = rest(:blank - 1)
          rest = trim(adjustl(rest(blank:)))
       end do
       if (len(rest) > 0 .or. words(4) == '') then
-         call deck%error(card%place_of('UNITS'), 'UNITS= has four words: length, stress, '// &
-            'power, temperature')
+         call deck%error(card%place_of('UNITS'), 'UNITS= has four or five words: length, '// &
+            'stress, power, temperature, time')
          return
       end if
       deck%model%units%length = trim(words(1))
       deck%model%units%stress = trim(words(2))
       deck%model%units%power = trim(words(3))
       deck%model%units%temperature = trim(words(4))
+      deck%model%units%time = trim(words(5))
    end subroutine build_units
 
    !> Reads LEVELS= of *REFINE; 0 after an error.

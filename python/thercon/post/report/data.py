@@ -10,6 +10,7 @@ from ..edge_curves import edge_curves
 from ..field_colours import PRINCIPAL, SIGNED
 from ..cells import CORNERS
 from ..fields import TITLES, USUAL, apart_words, touches_after_a_gap
+from ..rigid_surfaces import motion_of, surfaces
 from ..result import CELL_FIELDS, FIELD_SOURCES, NOISE, UNJUDGED, words_of
 from ..style import matplotlib
 from .sets import of_sets
@@ -19,6 +20,7 @@ FINE = 20_000  # elements: nodes on sides cannot be seen
 DERIVED = (*PRINCIPAL, "radial", "hoop")  # left out of the pages of fine meshes
 LEAST = {"gain": 1e-6}  # eigenvalues of the coupling are accurate to this
 PROFILES = ("pressure", "shear", "heat_flux", "gap")
+OF_HEAT = ("slave_temperature", "master_temperature", "heat_flux", "gap")  # of runs of heat alone
 COLOURS = ("viridis", "inferno", "RdBu_r")
 SHADES = 64
 LINEAR = {22: 5, 23: 9}  # VTK cell type without its midside nodes
@@ -77,7 +79,8 @@ def loads(result):
         "judged": result.judged.tolist(),
         "unjudged": UNJUDGED,
         # A load that turns would draw loading and unloading over each other.
-        "axis": plain(result.units.load_label(result.load_label)) if rises else "Time",
+        "axis": plain(result.units.load_label(result.load_label) if rises
+                      else result.units.label("Time", "time")),
         "rises": rises,
     }
 
@@ -86,7 +89,7 @@ def contact_data(result, contact):
     """Return the profiles, states, edges and totals of one contact."""
     name, coordinate = contact.axis(None)
     unit = plain(result.units.names.get("length", ""))
-    windows = [contact.window(coordinate, with_heat=heat) for heat in (False, True)]
+    windows = [contact.window(coordinate, of_loads=loads) for loads in (False, True)]
     return {
         "name": contact.name,
         "axis": name,
@@ -99,7 +102,8 @@ def contact_data(result, contact):
         },
         "friction": contact.friction,
         "status": packed(contact["status"], "u1"),
-        "profiles": {key: packed(contact[key]) for key in PROFILES if is_told(result, contact, key)},
+        "profiles": {key: packed(contact[key]) for key in (OF_HEAT if result.is_of_heat else PROFILES)
+                     if is_told(result, contact, key)},
         "edges": {
             key: packed(contact.edge_on_axis(contact[f"edges_{key}"], coordinate))
             for key in ("contact", "stick")
@@ -129,7 +133,7 @@ def is_told(result, contact, key):
         return False
     size = {"shear": largest(contact["pressure"]), "gap": np.ptp(result.cells.points[result.cells.used]),
             "heat_flux": largest(hottest(contact) * contact.data.get("conductance", 0.0))}
-    return key == "pressure" or largest(contact[key]) > NOISE * size[key]
+    return key == "pressure" or largest(contact[key]) > NOISE * size.get(key, 0.0)
 
 
 def largest(values):
@@ -169,12 +173,12 @@ def histories(result):
         of = f" of {contact.name}" if len(contacts) > 1 else ""
         crossing = contact.data.get("conductance", 0.0) * contact["weight"]
         peaks["heat"] = max(peaks.get("heat", 0.0), hottest(contact) * largest(crossing))
-        found += [each | {"label": each["label"].capitalize() + of}
+        found += [each | {"label": capital(each["label"]) + of}
                   for each in totals(result, contact)]
     for key, values in result.history.items():
         if key not in ("time", "load") and values.ndim == 1 and not key.endswith("_imbalance"):
             unit = plain(result.units.names.get("power", "")) if key in HEAT else ""
-            found.append({"key": key, "label": words_of(key).capitalize(), "unit": unit,
+            found.append({"key": key, "label": capital(words_of(key)), "unit": unit,
                           "values": listed(values), "uncertainty": uncertainty(known, key)})
     kinds = [next((kind for kind in ("heat", "gain") if kind in each["key"]),
                   each["key"].split("_")[-1]) for each in found]
@@ -183,6 +187,11 @@ def histories(result):
         peaks[kind] = max(peaks.get(kind, 0.0), size)
     return [each for each, kind, size in zip(found, kinds, sizes)
             if size > max(NOISE * peaks[kind], LEAST.get(kind, 0.0))]
+
+
+def capital(words):
+    """Return words with a capital first letter, and names such as ALLSE as they are."""
+    return words[:1].upper() + words[1:]
 
 
 def branch_data(result):
@@ -215,7 +224,7 @@ def fields_data(result):
     if result.contact_names:
         near = mesh.contact_window(contacts_of(result), cells, cells.points).tolist()
     moved = [result.point_data("displacement", step) for step in keep]
-    usual = USUAL[result.is_axisymmetric][1]
+    usual = USUAL[result.is_axisymmetric][not result.is_of_heat]
     return {
         "rows": [int(np.argmin(np.abs(result.history["time"] - times[step]))) for step in keep],
         "points": packed(cells.points[used]),
@@ -236,10 +245,19 @@ def fields_data(result):
         "overlaps": touches_after_a_gap(result),
         "apart": apart_words(result, 1.0) if result.given_gaps else "",
         "near": near,
+        "rigid": [rigid_data(result, *each, keep) for each in surfaces(result)],
         "displacement": None if moved[0] is None else whole_numbers([u[used, :2] for u in moved]),
         "first": there.index(usual) if usual in there else 0,
         "quantities": [quantity_data(result, q, keep, used) for q in there],
     }
+
+
+def rigid_data(result, points, group, steps):
+    """Return a drawing of a rigid body, and what it follows at the steps that the page keeps."""
+    centre, _, _ = motion_of(result, group, None)
+    motion = [[*displacement, rotation] for _, displacement, rotation in
+              (motion_of(result, group, step) for step in steps)]
+    return {"points": packed(points), "centre": centre.tolist(), "motion": packed(motion)}
 
 
 def kept_steps(count, numbers):
@@ -277,6 +295,6 @@ def whole_numbers(steps):
 def in_words(title):
     """Return the title of a panel without formulas: $q_x$ as qx, Greek letters as such."""
     for tex, word in ((r"\sigma", "\N{GREEK SMALL LETTER SIGMA}"), (r"\theta", "θ"),
-                      (r"\mathrm{M}", "M")):
+                      (r"\varepsilon", "ε"), (r"\mathrm", "")):
         title = title.replace(tex, word)
     return "".join(c for c in title if c not in "$_{}")

@@ -134,7 +134,7 @@ const abscissa = data.load.rises ? data.load.values : times;
 let row = count - 1;
 const loadWords = k => `${data.load.label} ${show(data.load.values[k])} ${data.load.unit}`.trim();
 function tellLoad() {
-   const time = data.load.label === 'time' ? '' : `, time ${show(times[row])}`;
+   const time = data.load.label === 'time' ? '' : `, time ${show(times[row])} ${unit('time')}`.trimEnd();
    const factor = data.load.factors[row] === null ? '' : `, load factor ${show(data.load.factors[row])}`;
    $('now').textContent = `${row + 1} of ${count}: ${loadWords(row)}${time}${factor}`;
    $('unjudged').textContent = data.load.judged[row] ? '' : `Increment ${row + 1} is ${data.load.unjudged}, so tractions may scatter.`;
@@ -217,10 +217,13 @@ function profile(id, title, quantities, label, zero, caption) {
    const isRounding = peak(now) <= 1e-6 * peak(all);
    chart($(id), {title: `${title} along interface ${c.name}, ${loadWords(row)}`, lines, uprights,
       xLabel: withUnit(c.axis, unit('length')), yLabel: label, caption,
-      xRange: [window[0] - room, window[1] + room], yRange: rangeOf($('same').checked || isRounding ? all : now, true)});
+      xRange: [window[0] - room, window[1] + room], yRange: rangeOf($('same').checked || isRounding ? all : now, id !== 'faces')});
 }
 function drawProfiles() {
    const c = contact(), said = loadWords(row), mu = c.friction;
+   profile('faces', 'Temperature of the faces', [['slave_temperature', 'slave', VERMILION, ''],
+      ['master_temperature', 'master', BLUE, '']], withUnit('temperature', unit('temperature')), false,
+      `Temperature of the faces, ${said}. ${part('profiles')}`);
    const shear = c.profiles.shear && c.profiles.shear.some(v => v !== 0);
    // Friction of one sign at this load is drawn positive, as in the pictures of post/plot.
    const values = shear ? rowOf(c.profiles.shear, c.at.length).filter(Number.isFinite) : [];

@@ -120,6 +120,7 @@ def contact_section(result):
 <div id="totals" aria-live="polite"></div>
 <div class="plots">
 <figure id="zones"></figure>
+<figure id="faces"></figure>
 <figure id="tractions"></figure>
 <figure id="flux"></figure>
 <figure id="gap"></figure>
@@ -131,6 +132,8 @@ FIELDS = """<form class="choice" aria-label="What the field shows">
 <label>Show <select id="region"><option value="model">whole model</option>
 <option value="near">contact</option></select></label>
 <label>Displacements × <input type="number" id="scale" min="0" step="any" value="1"></label>
+<label>Colours from <input type="number" id="low" step="any"></label>
+<label>to <input type="number" id="high" step="any"></label>
 <label><input type="checkbox" id="fixed"> same colours at all loads</label>
 <label><input type="checkbox" id="apart"> colours for each body</label>
 </form>

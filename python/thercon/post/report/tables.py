@@ -65,7 +65,7 @@ def facts(result, listing):
 
 def last_load(result):
     """Return time and load of the last increment in words."""
-    words = f"time {result.history['time'][-1]:g}"
+    words = plain(result.units.time_value(result.history["time"][-1]))
     if result.load_label == "time":
         return words
     load = result.units.load_value(result.load_label, result.history["load"][-1])
