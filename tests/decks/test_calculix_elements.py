@@ -40,8 +40,8 @@ ROUNDED = 1.05   # by how much figures of two digits are at most told too small
 def told(row):
     """Return the percentages in a row of docs/deck.md, Decks from Abaqus and CalculiX, as limits."""
     text = (DECKS.parents[1] / "docs" / "deck.md").read_text().split("\n## Decks from Abaqus")[1]
-    (line,) = [line for line in text.splitlines() if line.startswith(f"| {row} |")]
-    return [ROUNDED * float(number) / 100 for number in re.findall(r"([\d.]+) %", line)]
+    (told_of,) = re.findall(rf"^\| {re.escape(row)} \|.*\n(?:\| \|.*\n)*", text, re.M)
+    return [ROUNDED * float(number) / 100 for number in re.findall(r"([\d.]+) %", told_of)]
 
 
 def largest(differs, *quantities):
