@@ -124,6 +124,7 @@ class Case:
     remarks: str = ""
     named: str = "mesh"  # what a row is of; without refinement rows have no order
     bounded: bool = False  # whether the program bounds the errors, and the references are within
+    rounded: float = 0.0   # half of the last digit of the references, for bounds
     may_end: bool = False  # whether loads may be more than the bodies carry
 
     def solve(self, folder, mesh):
@@ -166,10 +167,9 @@ class Case:
             cells.insert(BOUND, f"{found.bound / abs(check.value):.2g}")
         return cells
 
-    @staticmethod
-    def exceeds(check, found):
-        """Return whether a reference is farther from a value than its bound."""
-        return not abs(found.value - check.value) <= found.bound
+    def exceeds(self, check, found):
+        """Return whether a reference is farther from a value than its bound and its digits allow."""
+        return not abs(found.value - check.value) <= found.bound + self.rounded
 
     def text(self):
         """Return what comes before the table."""
@@ -179,7 +179,8 @@ class Case:
 
     def cited(self):
         """Return the source without what follows its first sentence."""
-        return re.split(r"[:;] |(?<![A-Z])\. (?=[A-Z][\w']+ [a-z])", " ".join(self.source.split()))[0].rstrip(".")
+        source = " ".join(self.source.split())
+        return re.split(r"[:;] |(?<![A-Z])\. (?=[A-Z][\w']+ [a-z])", source)[0].rstrip(".")
 
     def tables(self, folder, meshes):
         """Return the tables of some of the meshes, and the runs for the picture."""

@@ -13,8 +13,8 @@ import transient
 from thermoelastic import Solid
 
 TITLE = "Heat of strains"
-TEXT = """Steps with DILATATION=YES: sudden loads agree with closed forms to rounding, slow ones converge with
-order 2 for any coupling delta = beta^2 T0/(M C_e) of heat and strains."""
+TEXT = """Steps with DILATATION=YES: sudden loads agree with closed forms to rounding, slow ones
+converge with order 2 for any coupling delta = beta^2 T0/(M C_e) of heat and strains."""
 DETAILS = """Steps with DILATATION=YES, with increments of one length and the default scheme, L-STABLE.
 Temperatures are rises from T0, the temperature of the start. Steel has E = 2.1e5 N/mm2, nu = 0.3,
 alpha = 1.2e-5/K, rho c_p = 3.588 mJ/(mm3 K), k = 50 mW/(mm K) and T0 = 293 K. The coupling of heat

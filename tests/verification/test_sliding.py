@@ -12,8 +12,9 @@ from physics import material, mesh, nodes_of
 from moving_source import face_temperature
 
 TITLE = "Sliding"
-TEXT = """Faces that slide along each other by many spacings of their nodes, with `SLIDING=FINITE`: a constant
-pressure is kept to rounding, Hertz's pressure and Jaeger's temperatures to 1 % at every place."""
+TEXT = """Faces that slide along each other by many spacings of their nodes, with `SLIDING=FINITE`:
+a constant pressure is kept to rounding, Hertz's pressure and Jaeger's temperatures to 1 % at every
+place."""
 PICTURE = "sliding"
 CAPTION = "Pressure under a roller before and after its slide; temperature of a rail under a pad"
 SMOOTH = ["*SURFACE INTERACTION, NAME=SMOOTH"]

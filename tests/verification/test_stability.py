@@ -14,8 +14,8 @@ import rods
 from frictional_heat import BarMode, burton
 
 TITLE = "Stability in time"
-TEXT = r"""The number of growing motions that \*STABILITY reports is right in every case; rates and periods are
-met to four digits."""
+TEXT = r"""The number of growing motions that \*STABILITY reports is right in every case; rates and
+periods are met to four digits."""
 DETAILS = """Every row halves the elements of the row before."""
 PICTURE = "stability"
 CAPTION = "Errors of rates and periods over meshes"
