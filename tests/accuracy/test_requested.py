@@ -16,7 +16,7 @@ from test_estimate import converged
 TITLE = "Accuracy on request"
 TEXT = """
 `thercon run DECK --accuracy P%` solves in rounds until the uncertainties of normal force, heat rate,
-peak pressure and edge of contact are within P per cent ([\\*ACCURACY](deck.md#accuracy) has the
+peak pressure and edge of contact are within P per cent ([\\*ACCURACY](deck/method.md#accuracy) has the
 rules). Each round solves the deck from its beginning on a mesh refined where it errs most. True
 errors are those to the converged values, CPU seconds those of all rounds. "By hand" is the cheapest
 of six meshes whose true error is inside the target; choosing it takes the converged values. Requests
@@ -24,7 +24,7 @@ of 1 % on 32 drawn decks were all reached, with true errors of at most 0.44 % an
 """
 DETAILS = """
 `thercon run DECK --accuracy P%` solves in rounds until the uncertainties of normal force, heat rate, peak
-pressure and edge of contact are within P per cent ([\\*ACCURACY](deck.md#accuracy) has the rules, also where no
+pressure and edge of contact are within P per cent ([\\*ACCURACY](deck/method.md#accuracy) has the rules, also where no
 uncertainty can be given). Each round solves the deck from its beginning, with elements divided where the
 recovered energy norm is large and round the edges of zones, the smaller the nearer. Where the last increment
 alone does not tell what is requested, as the peak pressure with friction, rounds use `ERRORS=FULL`, and take 4

@@ -15,7 +15,7 @@ from thercon.post.result import Result
 
 TITLE = "Branches"
 TEXT = """
-Steady states over the load factor that [\\*CONTINUATION](deck.md#continuation) follows, stable and
+Steady states over the load factor that [\\*CONTINUATION](deck/method.md#continuation) follows, stable and
 not. On 200 random rods (tests/decks/test_branches.py) it finds all states of an independent scan.
 Folds, the loads at which two states meet, are accurate to 1e-6.
 

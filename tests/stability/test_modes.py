@@ -24,7 +24,7 @@ from frictional_heat import burton
 
 TITLE = "States in time"
 TEXT = """
-Which states last, and how fast the others are left: figures of [\\*STABILITY](deck.md#stability),
+Which states last, and how fast the others are left: figures of [\\*STABILITY](deck/steps.md#stability),
 which disturbs a state a little and finds how heat, expansion, contact and conductance respond. "Growing"
 is the number of motions that grow; the rate is that of the fastest, negative where all decay.
 
