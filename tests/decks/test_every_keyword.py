@@ -84,7 +84,8 @@ def covered():
 
 def test_the_index_has_every_keyword():
     listed = re.findall(r"^\*([A-Z][A-Z-]*(?: [A-Z-]+)*)", run("--keywords").stdout, re.M)
-    linked = re.findall(r"\[\\\*([A-Z -]+)\]\(deck/\w+\.md#", INDEX.read_text())
+    index = INDEX.read_text().split("\n## ")[1]
+    linked = re.findall(r"\[\\\*([A-Z -]+)\]\(deck/\w+\.md#", index)
     assert len(listed) > 90
     assert linked == sorted(listed)
 
