@@ -81,7 +81,7 @@ def tables(_):
 
 
 def test_the_document_tells_what_is_on_record():
-    document = report.DOCUMENT.text()
+    document = "".join(report.DOCUMENT.texts())
     for part in tables(None):
         assert "\n".join(lines_of(part)).strip() in document
 

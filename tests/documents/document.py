@@ -125,6 +125,13 @@ def rows_of(text, title):
     return [dict(zip(found[0], row, strict=True)) for row in found[2:]]
 
 
+def is_in(text, part):
+    """Return whether a text has a table or a picture; prose must be in all of them."""
+    names = ([part.file] if isinstance(part, Picture) else
+             [f"\n## {part.title}\n", f"\n### {part.title}\n"] if isinstance(part, Table) else [""])
+    return any(name in text for name in names)
+
+
 def sections_of(path):
     """Return the lines of the sections of a file, by their titles."""
     found, lines = {}, []
@@ -159,9 +166,9 @@ class Document:
         """Return the path of the complete sections."""
         return self.folder / self.record if self.record else COMPLETE / self.file
 
-    def text(self):
-        """Return what tests compare with."""
-        return self.path.read_text() + (self.complete.read_text() if self.record else "")
+    def texts(self):
+        """Return what tests compare with: the document, and what is on record."""
+        return [path.read_text() for path in (self.path, self.complete) if path == self.path or self.record]
 
     def present(self):
         """Return the themes whose files are there, by their names and in their order."""
@@ -217,31 +224,29 @@ class Document:
         self.check_parts([theme.TEXT, *theme.tables(folder)])
 
     def check_parts(self, parts):
-        """Assert that no verdict of these parts fails, and that the document tells the same of
-        those that it has."""
+        """Assert that no verdict of these parts fails, and that the document, and what is on
+        record, tell the same of those that they have."""
         check_verdicts(part for part in parts if isinstance(part, Table))
-        document = self.text()
-        words = masked(re.sub(r"\]\((\.\./)+docs/", "](", document).splitlines())
-        for part in parts:
-            if isinstance(part, Table) and f"### {part.title}\n" not in document:
-                continue
-            text = masked(lines_of(part)).strip()
-            assert text in words, f"docs/{self.file} tells something else than\n{text}"
-            assert not isinstance(part, Picture) or (PICTURES / part.file).exists()
+        for document in self.texts():
+            words = masked(re.sub(r"\]\((\.\./)+docs/", "](", document).splitlines())
+            for part in parts:
+                if not is_in(document, part):
+                    continue
+                text = masked(lines_of(part)).strip()
+                assert text in words, f"docs/{self.file} tells something else than\n{text}"
+                assert not isinstance(part, Picture) or (PICTURES / part.file).exists()
 
     def check_rows(self, tables):
-        """Assert that no verdict of these tables fails, and that the document has their rows among
-        those of the same table, if it has the table: for tests that run a part of the cases of a
-        theme."""
+        """Assert that no verdict of these tables fails, and that the document, and what is on
+        record, have their rows among those of the same table, if they have the table: for tests
+        that run a part of the cases of a theme."""
         check_verdicts(tables)
-        document = self.text()
-        for table in tables:
-            if f"### {table.title}\n" not in document:
-                continue
-            told = [masked(row.values()) for row in self.rows(table.title)]
-            for row in table.rows:
-                found = dict(zip(table.head, map(shown, row), strict=True))
-                assert masked(found.values()) in told, f"docs/{self.file} does not tell {found}"
+        for document in self.texts():
+            for table in (table for table in tables if is_in(document, table)):
+                told = [masked(row.values()) for row in rows_of(document, table.title)]
+                for row in table.rows:
+                    found = dict(zip(table.head, map(shown, row), strict=True))
+                    assert masked(found.values()) in told, f"docs/{self.file} does not tell {found}"
 
     def rows(self, title):
         """Return the rows of a table as they are on record, or as the document has them, for tests
