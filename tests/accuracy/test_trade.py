@@ -30,20 +30,9 @@ DETAILS = """
 The tables show the deck as written (=), the recommended rows, and those that vary one thing where that changes
 errors; \\* marks Pareto-optimal ones. The pictures show all rows. Here the command ran with `--limit 8`.
 
-**Errors** are distances from an extrapolated reference plus its uncertainty, the largest at the ends of the
-longest increments, which all rows have: of forces, heat rates and peak pressures relative to the value at the
-same instant, or to a quarter of the largest value over time if that is more, of edges to the length of the
-contact in the same way, of temperatures of all corner nodes to the range of all temperatures.
-
-**The reference** is the finest mesh with its shortest increments, moved by what Richardson's extrapolation adds
-over meshes, and over increments on the finest mesh that has three sizes of them. If differences fall by a
-steady ratio, its uncertainty is that whole addition, otherwise, and always for edges, two to four times what
-the differences allow. The effect of TOL is added.
-
-**A recommendation** is the cheapest row that meets the target, and the targets before it, in all quantities for
-which any row does (*not all*: the reference itself is too uncertain in the others). **CPU seconds** are user
-and system time of a process that solves only this row, without reading the deck and without output, medians of
-7 runs below 0.1 s, 5 below 1 s, 3 below 5 s. MB is the largest resident memory.
+[running.md](running.md#speed-against-accuracy) defines errors, reference and recommendation. CPU seconds are
+user and system time of a process that solves only this row, without reading the deck and without output,
+medians of 7 runs below 0.1 s, 5 below 1 s, 3 below 5 s. MB is the largest resident memory.
 """
 IN_DOCUMENT = ["The published cylinder", "Errors and CPU time: The published cylinder"]
 LIMIT = "8"
