@@ -24,7 +24,8 @@ usage: ./setup.sh COMMAND
    build       install what is missing, build build/release/thercon
    lint        check the sources: fortitude, findent, shellcheck; with --fix fix what can be fixed
    coverage    install what is missing, build with gcov, run every test, report the lines executed
-   verify      run the verification manual again, write docs/verification.md
+   verify      run the verification manual again, write docs/verification.md, and with every
+               value build/documents/verification.md
    bench       run thercon and CalculiX at equal error again, against the figures on record;
                bench performance [PART...]: measure docs/performance.md again, all of it or the
                parts skyline, tail, levels, rods, paper, stability
@@ -352,7 +353,7 @@ run_verify() {
    install_python_packages
    say "running the verification manual"
    THERCON=$program "$venv/bin/python" "$root/tests/verification/manual.py"
-   say "the manual is docs/verification.md"
+   say "the manual is docs/verification.md, every value in build/documents/verification.md"
 }
 
 command=${1-}

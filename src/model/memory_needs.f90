@@ -3,7 +3,7 @@
 !> The entries of matrices and factors follow from the mesh: the profile of the skyline is that of
 !> the unrefined mesh in its profile order, and grows eightfold with each refinement; factors in
 !> nested dissection have 31/4 n log2 n entries (A. George, Nested dissection of a regular finite
-!> element mesh, 1973). How often entries are held at a time was measured, docs/theory.md.
+!> element mesh, 1973). How often entries are held at a time was measured, src/model/README.md.
 module memory_needs
    use contact_definitions, only: makes_friction_heat
    use controls, only: default_solver, solver_by_size, solver_mumps

@@ -13,6 +13,14 @@ from judged_families import FAMILIES
 
 TITLE = "Uncertainties judged on decks drawn afterwards"
 TEXT = """
+158 decks judge the rule, from ten families drawn after the constants were fixed
+(`tests/accuracy/judged_families.py`): faces refined over coarse bodies, largest stresses away from
+contact, triangles, mortar points with few master sides, transients, properties over temperature,
+bolts with pre-tension, rigid bodies, and new seeds of the decks above. In every family `ERRORS=FULL` holds
+for 96 % of the decks or more. Not judged are forces that loads prescribe, pressures and stresses at corners, which
+have no limit, and errors too small to judge.
+"""
+DETAILS = """
 The constants were fixed before these decks were drawn: ten families, of each the seeds from 1000 on
 (`tests/accuracy/judged_families.py`; while the rule was made, seeds below 10 were in sight).
 
@@ -37,6 +45,7 @@ without estimate, medians and 90 % are of uncertainty over error.
 Not judged are forces that loads prescribe, pressures and stresses at corners, which have no limit, numbers inside
 a step, and decks whose finer runs do not end.
 """
+IN_DOCUMENT = ["All families drawn afterwards"]
 ERRORS = "LAST", "FULL"
 SHARES = "All families drawn afterwards"
 OF_FAMILIES = "Decks of each family that hold"

@@ -15,6 +15,14 @@ from judged_decks import (FILE, by_deck, check_shares, compared, judged, misses,
 
 TITLE = "Uncertainties of bodies that yield or creep"
 TEXT = """
+60 decks with \\*PLASTIC or \\*CREEP (`tests/accuracy/inelastic_families.py`) judge `ERRORS=FULL`: tubes
+under pressure, heat and creep, press fits with hubs that yield or creep, punches on blocks that
+yield. `LAST` has no estimate there, and no constant was chosen on them. Of all quantities 97 % hold,
+errors outside are 2.1 times the uncertainty in the median, 3.4 times at most. Displacements hold in
+28 of 33 decks: where the errors of mesh and increments have opposite signs, FULL, which halves both
+at once, sees too little.
+"""
+DETAILS = """
 Three families (`tests/accuracy/inelastic_families.py`), of each 20 seeds from 1000 on, judge
 `ERRORS=FULL` on decks with \\*PLASTIC or \\*CREEP; `LAST` has no estimate there. No constant was
 chosen on them.
@@ -30,13 +38,8 @@ dimension (`tests/reference/inelastic_rings.py`) that agrees with Hill's tube an
 forms; those of punches are found [as above](#uncertainties-judged-on-decks-drawn-afterwards), with faces
 divided once, not twice, beyond the rest. Displacements are those of the outside of rings; energies
 are `ALLPD` or `ALLCD`, and `ALLWK`. Both have an uncertainty where \\*VERIFY names them.
-
-Displacements hold least often. Where errors of mesh and increments have opposite signs, FULL, which
-halves both at once, sees too little: of an error M of the mesh of second order and an error I of
-increments of first order it sees 3/4 M + 1/2 I, so the uncertainty is too small where -M/I is
-between 0.50 and 0.75. Forces and pressures of interfaces have fewer of these misses because their
-largest change of the last three increments counts.
 """
+IN_DOCUMENT = []
 SHARES, OF_FAMILIES = "Inelastic decks that hold", "Inelastic decks of each family that hold"
 TESTED = ("tubes 1000", "tubes 1001", "tubes 1002", "fits 1001", "fits 1003", "fits 1004",
           "punches 1006", "punches 1007")

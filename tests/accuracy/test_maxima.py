@@ -13,19 +13,32 @@ from maxima_decks import FAMILIES, KINDS
 
 TITLE = "Largest stress and temperature"
 TEXT = """
+Every run reports the largest von Mises stress and the largest temperature of each body with their
+uncertainties, and with `ERRORS=FULL` the largest plastic and creep strain. The same rule holds for
+stresses and temperatures at nodes that `*VERIFY` names.
+
+Stress is sought in elements without singular corners, where it grows without limit as the mesh is
+refined. Summary and listing name these corners if stress is larger round them:
+
+- reentrant corners; straight sides that turn by more than 30 degrees from one to the next make one,
+  as two linear elements for a quarter of a circle do;
+- corners between a held side and a free one, or one held in another way, beyond 70 degrees where
+  one side is clamped and 90 where it is held in one direction (M. L. Williams, J. Appl. Mech. 19
+  (1952) 526-528);
+- nodes at the outline where materials meet, ends of ties and of contacts where one face goes on;
+- nodes with a force, a support or a spring of their own. Forces on the nodes of a side act as
+  single forces, so that uncertainties there are far too large: use \\*DSLOAD.
+
+No uncertainty knows the shape of faces that linear elements make straight. The rule is judged on
+nine problems with closed forms (`tests/accuracy/maxima_decks.py`) of all elements, with 2, 4 and 8
+along each side: 99 % of 277 decks hold for stress, 98 % of 182 for temperature.
+"""
+DETAILS = """
 Every run tells the largest von Mises stress and the largest temperature of each body with their uncertainties,
 with contact and without, and those of stresses and temperatures at nodes that `*VERIFY` names. Elements at such
 a node and those next to them are divided, too. The change is the root mean square of those of the field at the
 nodes of the elements there, for at one node it may vanish by chance, and what the field rises above the value
 between nodes.
-
-Stress is looked for in elements without singular corners, where it may grow without limit as the mesh is
-refined. These are reentrant corners; corners between a held side and a free one, or one held in another way,
-whose angle exceeds that from which stress has no limit (M. L. Williams, J. Appl. Mech. 19 (1952) 526-528; 70
-degrees where one side is clamped, 90 where it is held in one direction); nodes at the outline where materials
-meet; ends of ties and of contacts, where one face goes on; and nodes with a force, a support or a spring of
-their own. Summary and listing name those round which stress is larger. Where straight sides turn by more than
-30 degrees from one to the next, as two linear elements for a quarter of a circle do, they make such a corner.
 
 With ERRORS=FULL the largest plastic and creep strain of each body have theirs in the same way. Of 36 tubes
 that yield to 1.2, 1.5 and 1.8 times their bore (CAX8R, CAX8, CAX4, CAX4I; 4, 8 and 16 elements) and 6 that
@@ -39,6 +52,7 @@ of eight, eight reduced, four, four with incompatible modes, six and three nodes
 each side; each mesh of each draw is a deck. Errors below 1e-5 of the value are not judged, nor stress that is
 larger round a singular corner which the summary names.
 """
+IN_DOCUMENT = []
 SIZES = 2, 4, 8
 DRAWS = 3
 ERRORS = "LAST", "FULL"

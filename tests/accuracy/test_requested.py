@@ -15,8 +15,16 @@ from test_estimate import converged
 
 TITLE = "Accuracy on request"
 TEXT = """
+`thercon run DECK --accuracy P%` solves in rounds until the uncertainties of normal force, heat rate,
+peak pressure and edge of contact are within P per cent ([\\*ACCURACY](deck/method.md#accuracy) has the
+rules). Each round solves the deck from its beginning on a mesh refined where it errs most. True
+errors are those to the converged values, CPU seconds those of all rounds. "By hand" is the cheapest
+of six meshes whose true error is inside the target; choosing it takes the converged values. Requests
+of 1 % on 32 drawn decks were all reached, with true errors of at most 0.44 % and 98 to 100 % of the uncertainties right.
+"""
+DETAILS = """
 `thercon run DECK --accuracy P%` solves in rounds until the uncertainties of normal force, heat rate, peak
-pressure and edge of contact are within P per cent ([\\*ACCURACY](deck.md#accuracy) has the rules, also where no
+pressure and edge of contact are within P per cent ([\\*ACCURACY](deck/method.md#accuracy) has the rules, also where no
 uncertainty can be given). Each round solves the deck from its beginning, with elements divided where the
 recovered energy norm is large and round the edges of zones, the smaller the nearer. Where the last increment
 alone does not tell what is requested, as the peak pressure with friction, rounds use `ERRORS=FULL`, and take 4
@@ -27,6 +35,7 @@ together. All start from the deck's mesh without \\*REFINE. "By hand" is the che
 uncertainties whose true error is inside the target: that mesh refined uniformly (0 to 2 levels), at the contact
 faces (1 or 2), or once and then there. Only who knows the converged values can choose it.
 """
+IN_DOCUMENT = ["Targets, uncertainties and true errors"]
 DRAWN = 16   # number of decks of each pairing
 HEAD = ["deck", "target", "status", "rounds", "CPU s", "elements", "increments",
         "uncertainty/target", "true error/target", "by hand, CPU s", "mesh by hand"]

@@ -14,38 +14,30 @@ from thercon.post import style, trade
 TITLE = "Speed for accuracy, measured"
 TEXT = """
 `thercon trade DECK` measures what accuracy costs; [running.md](running.md#speed-against-accuracy)
-describes the command and its table. Three decks teach:
+describes the command, its table and how it finds reference and recommendations. Three decks teach:
 
-- Refine the mesh, at the contact faces first, with elements that have midside nodes.
-- Leave increments, tolerance and method as they are. Only friction depends on the increments.
+- Refine the mesh, at the contact faces first, with elements that have midside nodes: on the
+  cylinder `Q8 x 2:8` has the errors of the uniform mesh `Q8 x 8` in a sixth of its time, and linear
+  elements need the mesh halved twice more for the same force.
+- Leave increments, tolerance and method as they are. Increments matter only for the edge of stick;
+  `GALERKIN` and `CRANK-NICOLSON` do not damp the error that a closing contact point leaves in the
+  heat rate; only `NEWTON` solves the strongly coupled twin.
 
+The table shows the deck as written (=), the recommended rows, and those that vary one thing where
+that changes errors; \\* marks Pareto-optimal ones. The picture shows all rows.
+"""
+DETAILS = """
 The tables show the deck as written (=), the recommended rows, and those that vary one thing where that changes
 errors; \\* marks Pareto-optimal ones. The pictures show all rows. Here the command ran with `--limit 8`.
 
-**Errors** are distances from an extrapolated reference plus its uncertainty, the largest at the ends of the
-longest increments, which all rows have: of forces, heat rates and peak pressures relative to the value at the
-same instant, or to a quarter of the largest value over time if that is more, of edges to the length of the
-contact in the same way, of temperatures of all corner nodes to the range of all temperatures.
-
-**The reference** is the finest mesh with its shortest increments, moved by what Richardson's extrapolation adds
-over meshes, and over increments on the finest mesh that has three sizes of them. If differences fall by a
-steady ratio, its uncertainty is that whole addition, otherwise, and always for edges, two to four times what
-the differences allow. The effect of TOL is added.
-
-**A recommendation** is the cheapest row that meets the target, and the targets before it, in all quantities for
-which any row does (*not all*: the reference itself is too uncertain in the others). **CPU seconds** are user
-and system time of a process that solves only this row, without reading the deck and without output, medians of
-7 runs below 0.1 s, 5 below 1 s, 3 below 5 s. MB is the largest resident memory.
+[running.md](running.md#speed-against-accuracy) defines errors, reference and recommendation. CPU seconds are
+user and system time of a process that solves only this row, without reading the deck and without output,
+medians of 7 runs below 0.1 s, 5 below 1 s, 3 below 5 s. MB is the largest resident memory.
 """
+IN_DOCUMENT = ["The published cylinder", "Errors and CPU time: The published cylinder"]
 LIMIT = "8"
 ROUNDING = 1e-8
-CYLINDER = """\
-Spend time on the mesh, at the contact faces first: `Q8 x 2:8` has the errors of the
-uniform mesh `Q8 x 8` in a sixth of its time and a quarter of its memory. Increments hardly matter:
-increments four times as long are equally good except for the edge of stick. Linear elements need
-the mesh halved twice more for the same force, at several times the cost. Tolerance and method
-change nothing here. `GALERKIN` and `CRANK-NICOLSON` do not damp the error that a closing contact
-point leaves in the heat rate; `MUMPS` takes longer at this size."""
+CYLINDER = "Tolerance and method change nothing here; `MUMPS` takes longer at this size."
 TWIN = """\
 At first contact, near 540 C, two contact points compete for the heat; the results there depend on
 the mesh far more than anything on the cylinder above. The uncertainty of the reference shows it:

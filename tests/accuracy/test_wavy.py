@@ -12,6 +12,14 @@ from report import check_parts
 
 TITLE = "Edges against known solutions"
 TEXT = """
+An elastic half-space is pressed on a hard face in 15 families with known edges
+(`tests/accuracy/wavy_faces.py`): Westergaard's cosines, with heat Panek and Dundurs, Cattaneo and
+Mindlin, punches, wedges, Hertz's parabolas, Keer's receding layer, Spence's rough cylinder. Mesh,
+increments, pairing and width are drawn; no constant was chosen on these decks. All edges are within
+their uncertainties, which are 2.6 to 3.8 times the error in the median: 205 edges of contact with
+`LAST`, 204 and 31 edges of stick with `FULL`.
+"""
+DETAILS = """
 An elastic half-space, of a period in a plane or inside a smooth tube, is pressed on a hard face, with node
 pairs and with mortar points, 16 to 48 elements a period and 1 to 40 increments; width of the contact, heat,
 mesh, increments and whatever else a family has are drawn (`tests/accuracy/wavy_faces.py`). No constant was
@@ -21,6 +29,7 @@ conductance, punches, wedges, two elastic bodies), Galerkin's method (Hertz's pa
 receding layer: Keer, Dundurs and Tsai) and cell by cell (Spence's rough cylinder). Errors below 0.01 of the
 spacing, of closed forms without heat below 0.001 and of Spence's edge of stick below 0.1 are not judged.
 """
+IN_DOCUMENT = []
 # Errors that the solutions may have, of the spacing, and those that closed forms do not have.
 LEAST, LEAST_EXACT = {"edge_contact": 0.01, "edge_stick": 0.1}, 0.001
 EXACT = ("cold", wavy_faces.SHEARED)

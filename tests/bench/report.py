@@ -33,10 +33,10 @@ long: on an Intel Xeon of 2023 with OpenBLAS 0.3.21, four uniform refinements of
 instead of 17 s, and a pellet with 3000 elements and 5 interfaces 16 instead of 9 s. The variable
 `OPENBLAS_CORETYPE` of the environment names a known processor: `SKYLAKEX` has AVX-512, `HASWELL` AVX2.
 
-`./setup.sh bench performance` writes this document from runs; with the names of sections
-(`skyline`, `tail`, `levels`, `rods`, `paper`, `stability`) it renews these alone. Times are CPU seconds of
-one thread; those of another machine, or of the same one on another day, differ. Operations and
-instructions do not.
+`./setup.sh bench performance` writes this page from runs, and every table to
+`build/documents/performance.md`; with the names of sections (`skyline`, `tail`, `levels`, `rods`,
+`paper`, `stability`) it renews these alone. Times are CPU seconds of one thread; those of another
+machine, or of the same one on another day, differ. Operations and instructions do not.
 """
 DOCUMENT = Document("performance.md", HERE, ("skyline", "tail", "levels", "rods", "paper", "stability"),
                     PREFACE)

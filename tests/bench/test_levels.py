@@ -24,6 +24,7 @@ that the interface needs at least once: factoring the thermal and the mechanical
 its Schur complement on the contact points, and what a unit temperature jump at each contact point
 makes of the forces there. SKYLINE solves for each jump; MUMPS eliminates both fields together.
 """
+IN_DOCUMENT = ["Seconds by stage", "What limits one machine"]
 STAGES = ("read", "assemble", "reduce", "iterate", "recover", "write")
 RUNS = (*((solver, level) for level in range(4) for solver in ("SKYLINE", "MUMPS")),
         ("MUMPS", 4), ("MUMPS", 5))

@@ -13,7 +13,7 @@ from instructions import profile
 
 TITLE = "Analysis of stability"
 TEXT = """
-What an analysis by [\\*STABILITY](deck.md#stability) at the end of a step takes, by callgrind, and
+What an analysis by [\\*STABILITY](deck/steps.md#stability) at the end of a step takes, by callgrind, and
 what ten increments of the run take on the average, with `ERRORS=NO` and without writing;
 uncertainties and writing double what an increment of the cylinder takes. Bodies have the heat
 capacity of steel.

@@ -1,12 +1,14 @@
-"""Every keyword and parameter of docs/deck.md has a test that runs decks with two values of it, and
-a refused deck with a bad value of each."""
+"""Every keyword and parameter of docs/deck has a test that runs decks with two values of it, and a
+refused deck with a bad value of each. The index, docs/deck.md, has every keyword."""
 
 import importlib
 import re
 
-from deck_runs import DECKS
+from deck_runs import DECKS, run
 
-REFERENCE = DECKS.parents[1] / "docs" / "deck.md"
+INDEX = DECKS.parents[1] / "docs" / "deck.md"
+CHAPTERS = [path for path in sorted((INDEX.parent / "deck").glob("*.md"))
+            if path.stem != "other_programs"]
 FLAGS = {"GENERATE", "DIRECT", "PRESSURE", "CLEARANCE", "ROUGH", "ADD", "REMOVE", "SHRINK",
          "READ", "WRITE", "OVERLAY", "SHIFT", "FIXED",
          "REFLECT"}
@@ -42,9 +44,8 @@ ONE_VALUE = {
 
 def sections():
     """Return the keywords and the text of each section of the reference that describes cards."""
-    text = REFERENCE.read_text().split("\n## Decks from Abaqus")[0]
-    text = text.replace("\\*", "*")
-    for part in re.split(r"^###? ", text[text.index("\n## Model"):], flags=re.M)[1:]:
+    text = "\n".join(path.read_text() for path in CHAPTERS).replace("\\*", "*")
+    for part in re.split(r"^##? ", text, flags=re.M)[1:]:
         title, _, body = part.partition("\n")
         yield re.findall(r"\*([A-Z][A-Z -]+)", title), body
 
@@ -81,6 +82,14 @@ def covered():
     return found
 
 
+def test_the_index_has_every_keyword():
+    listed = re.findall(r"^\*([A-Z][A-Z-]*(?: [A-Z-]+)*)", run("--keywords").stdout, re.M)
+    index = INDEX.read_text().split("\n## ")[1]
+    linked = re.findall(r"\[\\\*([A-Z -]+)\]\(deck/\w+\.md#", index)
+    assert len(listed) > 90
+    assert linked == sorted(listed)
+
+
 def test_every_keyword_and_parameter_is_tested_in_two_values():
     known = described()
     assert {"FILM, FILM AMPLITUDE", "ELASTIC, TYPE", "NODE FILE, FREQUENCY", "STATIC, DIRECT",
@@ -95,7 +104,7 @@ def test_what_is_said_to_have_one_value_is_described():
 
 def test_tests_name_what_the_reference_describes():
     unknown = covered() - described()
-    assert not unknown, f"docs/deck.md does not describe: {sorted(unknown)}"
+    assert not unknown, f"docs/deck does not describe: {sorted(unknown)}"
 
 
 def refused():

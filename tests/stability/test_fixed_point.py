@@ -15,9 +15,16 @@ from test_known_rods import RODS
 from rods import Rods
 
 TITLE = "Fixed point of the conductance"
-TEXT = f"""
-NEWTON, the default, finds a solution in every case of this section. The other methods fail in 5 to 13 % of them, where the coupling is strong.
-
+TEXT = """
+NEWTON, the default, finds a solution in every case: rods whose solutions are known in closed form
+with 60 digits, 10,000 random rods whose conductance jumps where they touch, and all increments of
+the published cylinder and its strongly coupled twin on three meshes. It takes three passes
+(iterations) an increment on the cylinder, up to 22 on the twin. The other methods fail in 5 to 13 %
+of the cases, where the coupling is strong; they say so with exit status 2 and name the increment.
+Where methods find a solution, all find the same to 1e-8, also from other starts (FROM=OPEN,
+FROM=CLOSED).
+"""
+DETAILS = f"""
 Every method solves omega = U(omega); "relaxed 0.5" is (4.2) with the constant g = 0.5. Only NEWTON must not give up; the others may, with a message, after {MAXITER} passes (iterations) on the rods and 50 on the
 cylinder. What a method finds must be a solution. (4.1) converges only if |U'| < 1, and with g = 0.5 only if |0.5 + 0.5 U'| < 1: on R2 both cycle without end, which counts as `pass`.
 
@@ -26,6 +33,7 @@ end may also be in different states, which the closed forms do not cover; such s
 (`tests/stability/rod_equations.py`). Errors are relative errors of omega. "Error of what is allowed" is their share of 2 (TOL + rounding)/min(|1 - U'|, 1), where rounding is that of the
 displacements in omega. `tests/decks/test_coupling_gain.py` compares `coupling_gain` with finite differences of U.
 """
+IN_DOCUMENT = ["The default"]
 BRANCHES = "open", "middle", "closed"
 ON_CYLINDER = tuple(METHODS)[:4]
 SAME = 1e-6

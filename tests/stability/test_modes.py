@@ -24,14 +24,19 @@ from frictional_heat import burton
 
 TITLE = "States in time"
 TEXT = """
-Which states last, and how fast the others leave: figures of
-[\\*STABILITY](deck.md#stability), which disturbs a state a little and finds how heat, expansion,
-contact and conductance answer each other. "Growing" is the number of motions that grow; the rate is
-that of the fastest one, negative where all decay.
+Which states last, and how fast the others are left: figures of [\\*STABILITY](deck/steps.md#stability),
+which disturbs a state a little and finds how heat, expansion, contact and conductance respond. "Growing"
+is the number of motions that grow; the rate is that of the fastest, negative where all decay.
 
-The gain U' tells a part of it only. Of several states those with U' > 1 are unstable, but a state
-may be the only one, with U' = 0, and still oscillate ever more, and one with U' = -1000 may last.
+- Rates and periods agree with dense eigenvalues and closed forms to 1e-3, the critical speed of a
+  sliding face to 2e-5, and runs in time with both. No number of growing motions is wrong, at 796
+  states of two joints, either.
+- The coupling gain U' tells only a part. Of several states those with U' > 1 are unstable, but a
+  state may be the only one, with U' = 0, and still oscillate with growing amplitude; one with
+  U' = -1000 may last.
+- All states of the cylinder and of its twin last, also where the simple iteration (4.1) fails.
 """
+IN_DOCUMENT = ["Three states of two rods", "A state that oscillates, and rates of a sliding face", "States of two joints over load and conductance"]
 CAPACITY = 3.6e6
 
 

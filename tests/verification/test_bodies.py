@@ -11,7 +11,8 @@ from test_physics_cracks import HALF, arc_length, caliper, gassy
 from test_physics_rings import CLOSED, RADII, tubes
 
 TITLE = "Several interfaces, rings and cracks"
-TEXT = ""
+TEXT = """Uniform states are exact to rounding, with several interfaces, too; tubes, rings and the
+crack converge; press fits are met to 0.002 MPa."""
 PICTURE = "bodies"
 CAPTION = "Errors of tubes and of a crack filled with gas, and the gap of that crack"
 CALIPERS = {"pressed": -0.002, "apart": 0.02, "closed by heat": 0.009}
@@ -111,7 +112,7 @@ def cases():
              f"""Tubes of radii {RADII[0]:g} to {RADII[1]:g} and {RADII[1]:g} to {RADII[2]:g}, whole
              rings of CPE8 elements whose contact faces are closed, hot inside; heat closes them,
              and their pressure makes the contact conduct.""",
-             """Lame, and radial conduction (Timoshenko and Goodier, sections 28, 151):
+             """Lamé, and radial conduction (Timoshenko and Goodier, sections 28, 151):
              tests/reference/hot_tubes.py.""",
              """Sums 1e-4 with 16 elements around, falling with h^4, since sides are parabolas that
              leave the circle; pressures at nodes, forces over tributary lengths, 2 %, falling with
@@ -148,7 +149,7 @@ def cases():
              around, each with a reference node of its own. E = 200 GPa, nu = 0.3; the hub creeps by
              3.125e-14 q^5/h. In plane strain the pressure would be 82.418. Forces are 13.09 times the
              pressures in MPa, 75, 54.376, 20.475 and 11.553.""",
-             "Lame with free ends; after that, tests/reference/creeping_fit.py, in one dimension.",
+             "Lamé with free ends; after that, tests/reference/creeping_fit.py, in one dimension.",
              """0.002 MPa, of a pressure of 11.553 in the end: sides that leave the circle, and increments
              of the default accuracy.""",
              [5, 10, 20], creeping_fit, lambda n: f"{n} through the hub", short=1, kind="EXTERNAL"),

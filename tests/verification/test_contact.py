@@ -13,7 +13,8 @@ import lame
 import receding
 
 TITLE = "Contact"
-TEXT = ""
+TEXT = """A uniform pressure is transferred to rounding between faces whose nodes do not match;
+Hertz's largest pressures are met to 0.1 %, edges of contact to a fraction of a side."""
 PICTURE = "contact"
 CAPTION = "Pressures of Hertz's contacts and of a receding layer: points computed, lines known"
 SMOOTH = ["*SURFACE INTERACTION, NAME=SMOOTH"]

@@ -13,7 +13,9 @@ from physics import material, mesh, nodes_of
 import lame
 
 TITLE = "Elements"
-TEXT = ""
+TEXT = """Manufactured fields, a tube, a cantilever and a membrane: every element converges with its
+theoretical order. In the tube with Poisson's ratios up to 0.49999, CAX8R, CAX4, CAX4I and CAX6 stay
+within 0.6 %; CAX8 and CAX3 lock above 0.49, and the program warns."""
 PICTURE = "elements"
 CAPTION = "Errors of manufactured solutions and of thick cylinders over the mesh"
 KINDS = [family + nodes for nodes in ("8", "8R", "6", "4", "4I", "3") for family in ("CPE", "CPS", "CAX")]

@@ -9,7 +9,8 @@ from pictures import save, subplots
 from physics import material, mesh, nodes_of
 
 TITLE = "Friction"
-TEXT = ""
+TEXT = """Edges of stick are within half a side of an element, shear tractions within 0.3 % of the
+largest, displacements within 3 %."""
 PICTURE = "friction"
 CAPTION = "Shear of Cattaneo's and Mindlin's contact, and the displacement of the block"
 

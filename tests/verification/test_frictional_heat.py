@@ -11,7 +11,8 @@ from test_transients import bar, graded, node_at, start
 from frictional_heat import BarMode, burton, half_spaces
 
 TITLE = "Heat of friction"
-TEXT = """Faces that rub. Increments have one length and the default scheme, L-STABLE; every row
+TEXT = """Heat is the work of friction to rounding; rates at which motions grow are met to 1 %."""
+DETAILS = """Faces that rub. Increments have one length and the default scheme, L-STABLE; every row
 halves the elements and the increments of the row before."""
 PICTURE = "frictional_heat"
 CAPTION = "Errors of the heat of friction over meshes and increments"

@@ -13,7 +13,9 @@ import crack
 import rods
 
 TITLE = "Heat and contact"
-TEXT = ""
+TEXT = """Walls and rods agree with closed forms to 1e-8. The published cylinder agrees with an
+independent solver to 0.5 % in force and 2.5 % in heat on the mesh of the paper; on one mesh with
+TOL=1e-12, pressure, shear, gap, slip, flux and both edges of all 45 increments agree to 2e-12."""
 PICTURE = "heat"
 CAPTION = "A crack closed by heat, gaps with gas and radiation, errors of the published cylinder"
 COUPLED = ["*STEP", "*COUPLED TEMPERATURE-DISPLACEMENT, STEADY STATE", "1., 1."]

@@ -13,7 +13,8 @@ from moving_source import face_temperature
 
 TITLE = "Sliding"
 TEXT = """Faces that slide along each other by many spacings of their nodes, with `SLIDING=FINITE`:
-contact is where the faces are, and is what it would be between bodies drawn there."""
+a constant pressure is kept to rounding, Hertz's pressure and Jaeger's temperatures to 1 % at every
+place."""
 PICTURE = "sliding"
 CAPTION = "Pressure under a roller before and after its slide; temperature of a rail under a pad"
 SMOOTH = ["*SURFACE INTERACTION, NAME=SMOOTH"]
@@ -214,7 +215,7 @@ def cases():
              lambda kind: f"{kind[0]}, n = {kind[1]}", named="slave"),
         Case("Sleeve slid along a shaft", """Axisymmetric: a sleeve of radii 1 and 2 and length 1
              on a rigid shaft with an overlap of 1e-6, E = 1000, nu = 0.3, both ends held and moved
-             along the axis by 2. 4 elements through the wall, and more.""", "Lame, plane strain.",
+             along the axis by 2. 4 elements through the wall, and more.""", "Lamé, plane strain.",
              "1e-3 for 4 elements, a tenth of it for twice as many.", [4, 8], sleeve,
              lambda rows: f"{rows} elements"),
         Case("Pad under a constant pressure", """A pad of distorted elements, nu = 0, under the

@@ -12,9 +12,9 @@ from test_transients import allowed, graded, heat, label, node_at, start
 import tables as known
 
 TITLE = "Properties over temperature"
-TEXT = """Materials whose properties are tables over temperature.
-
-Steady fields are allowed twice the largest difference between the exact temperature and its
+TEXT = """Materials whose properties are tables over temperature: rectangles with a linear k(T) are
+exact to rounding, transients converge with order 2, cylinders are met to 0.01 %."""
+DETAILS = """Steady fields are allowed twice the largest difference between the exact temperature and its
 interpolation by the elements, which falls with h^2 for elements without nodes between corners and
 with h^3 for the others; other quantities state their own. Transients are allowed what those of the
 section before are: 0.1 (dt/t)^2 of the jump."""

@@ -14,7 +14,10 @@ from scipy.optimize import brentq
 import transient
 
 TITLE = "Transients"
-TEXT = """Bodies that store heat, with increments of one length and the default scheme, L-STABLE.
+TEXT = """Temperatures after a jump converge with order 2, that of the scheme L-STABLE; every row of
+the complete tables halves elements and increments. On the finest ones the error is below 0.01 % of
+the jump."""
+DETAILS = """Bodies that store heat, with increments of one length and the default scheme, L-STABLE.
 Every row halves the elements and the increments of the row before. The last table has increments
 that are chosen by their error instead.
 

@@ -137,7 +137,7 @@ contains
          return
       end if
       hint = nearest_known(name, names)
-      if (len(hint) == 0) hint = '; docs/deck.md lists those that are known'
+      if (len(hint) == 0) hint = '; docs/deck/output.md lists those that are known'
       call deck%error(data%place(1), 'unknown quantity '//name//hint)
    end subroutine read_quantity
 
