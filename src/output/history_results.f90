@@ -212,18 +212,19 @@ contains
       do i = 1, size(tables)
          if (.not. counts(i)) cycle
          do k = 1, size(tables(i)%columns)
-            call take(tables(i)%columns(k))
+            call take(tables(i)%columns(k), values)
          end do
          do k = 1, size(tables(i)%totals)
-            call take(tables(i)%totals(k))
+            call take(tables(i)%totals(k), values)
          end do
       end do
       if (.not. allocated(values)) allocate (values(0))
 
    contains
 
-      pure subroutine take(column)
+      pure subroutine take(column, values)
          type(table_column_type), intent(in) :: column
+         real(dp), allocatable, intent(inout) :: values(:)
 
          if (allocated(column%values) .and. column%name == name) values = column%values
       end subroutine take
