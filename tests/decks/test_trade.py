@@ -342,7 +342,7 @@ def test_increments_by_error_are_varied_by_their_error(tmp_path):
         transients.bodies(upper=(column, transients.HIGH), lower=(column, transients.LOW)),
         transients.contact(), ["*FIXED POINT, TOL=1.E-12"],
         transients.heated(how=", LOCAL ERROR=2.E-3"))
-    rows, _ = trade(deck, tmp_path, "--quiet", "--limit", "0.001")
+    rows, _ = trade(deck, tmp_path, "--quiet", "--limit", "0.01")
     found = {row["increment_factor"]: row for row in rows[:-1] if row["elements"] == "Q8"
              and (row["level"], row["contact_level"], row["varied"]) == ("0", "0", "")}
     for one, other in itertools.pairwise(("4", "2", "1", "0.5", "0.25")):
