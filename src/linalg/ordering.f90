@@ -8,8 +8,8 @@ module ordering
    use sparse_matrix, only: sparse_matrix_type, triplet_list_type
    implicit none
    private
-   public :: adjacency, alike_unknowns, find_levels, first_rows, nested_dissection, &
-      positions_by_rank, profile_order
+   public :: adjacency, alike_unknowns, first_rows, nested_dissection, positions_by_rank, &
+      profile_order
 
    interface
       !> METIS_NodeND while SIGTERM waits.
@@ -122,29 +122,6 @@ contains
          position(order(placed)) = graph%row_count + 1 - placed
       end do
    end function profile_order
-
-   !> Distances of all vertices from an outer vertex of each connected part. Those of the parts
-   !> follow one another, so that each level belongs to one part.
-   pure subroutine find_levels(graph, level, first)
-      type(sparse_matrix_type), intent(in) :: graph !! as from adjacency; may have a diagonal
-      integer, intent(out) :: level(:)              !! (vertices) from 1
-      integer, allocatable, intent(out) :: first(:) !! (parts + 1) first level of each
-      integer :: i, of_part(size(level)), order(size(level)), placed
-
-      level = 0
-      of_part = 0
-      placed = 0
-      first = [1]
-      do i = 1, size(level)
-         if (of_part(i) /= 0) cycle
-         call breadth_first(graph, pseudo_peripheral(graph, i), of_part, order(placed + 1:))
-         associate (reached => order(placed + 1:count(of_part /= 0)))
-            level(reached) = first(size(first)) - 1 + of_part(reached)
-            first = [first, first(size(first)) + maxval(of_part(reached))]
-            placed = placed + size(reached)
-         end associate
-      end do
-   end subroutine find_levels
 
    !> A vertex almost as far from some other as the graph allows.
    pure function pseudo_peripheral(graph, first) result(vertex)

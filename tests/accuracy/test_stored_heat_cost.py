@@ -9,7 +9,7 @@ import transients as two
 from instructions import profile
 from test_needed import MEASURED
 
-COLUMNS = [float(x) for x in np.linspace(0.0, 1.0, 6)]
+COLUMNS = [float(x) for x in np.linspace(0.0, 1.0, 4)]
 QUIET = ["*NODE FILE, FREQUENCY=0", "NT"]
 STEADY = ["*BOUNDARY", f"UPPER.TOP, 11, 11, {two.HOT!r}", f"LOWER.BOTTOM, 11, 11, {two.COLD!r}"]
 

@@ -184,7 +184,7 @@ CONTACT = [
 def test_a_stress_presses_faces_together(tmp_path):
     """Two bars in a row between walls, the lower with sigma0 = -10: both carry half of it. The
     errors of mesh and increments are estimated as 0."""
-    deck = [*CONTACT, *stressed(("LOWER", [0.0, -10.0])), *static()]
+    deck = ["*OPTIONS, ERRORS=LAST", *CONTACT, *stressed(("LOWER", [0.0, -10.0])), *static()]
     result = judge(tmp_path, deck, [("normal_force", "FACE", "LAST", 10.0, 1e-9),
                                     ("S22", "LOWER", "LAST", -5.0, 1e-9),
                                     ("S22", "UPPER", "LAST", -5.0, 1e-9)])

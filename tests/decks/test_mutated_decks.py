@@ -44,7 +44,7 @@ def test_a_missing_node_of_an_element_is_an_error(tmp_path, kind):
         nodes = ["1", "2", "3", "4", "11", "12", "13", "14"][:count]
         nodes[missing] = NUMBER
         element = f"*ELEMENT, TYPE={kind}, ELSET=X\n9, {', '.join(nodes)}\n"
-        for use in USES:
+        for use in USES if missing in (0, count - 1) else USES[:1]:
             deck.write_text(MESH + element + MODEL + cards + use + STEP + "*END STEP\n")
             process = run("check", "--quiet", deck)
             assert process.returncode == 1, deck.read_text() + process.stderr

@@ -2,6 +2,7 @@
 
 import subprocess
 import sys
+from functools import cache
 from math import log, pi, radians, tan
 
 import h5py
@@ -274,33 +275,42 @@ def brake_pad():
             ("heat_in", "", "LAST"): 0.5 * 20, ("heat_out", "", "LAST"): 0.5 * 20}
 
 
+@pytest.fixture(scope="module")
+def solved(tmp_path_factory):
+    """Solve examples once each, without uncertainties, which test_companion_runs.py adds; return their
+    results by name."""
+    folder = tmp_path_factory.mktemp("examples")
+
+    @cache
+    def result(name):
+        process = run("run", "--quiet", EXAMPLES / f"{name}.inp", "--out", folder, "--errors", "no")
+        assert process.returncode == 0, process.stderr
+        assert process.stderr == ""
+        return folder / f"{name}.vtkhdf"
+
+    return result
+
+
 @pytest.mark.parametrize("name", NAMES)
-def test_example_passes_its_checks(tmp_path, name):
-    process = run("run", "--quiet", EXAMPLES / f"{name}.inp", "--out", tmp_path)
-    assert process.returncode == 0, process.stderr
-    assert process.stderr == ""
-    with h5py.File(tmp_path / f"{name}.vtkhdf") as file:
+def test_example_passes_its_checks(solved, name):
+    with h5py.File(solved(name)) as file:
         # Rounding of sums over some hundred nodes; the shrink fit's radial sums are no imbalance.
         # Laws settle to 1e-9 of the largest force at a node, and few forces balance in a melt.
         assert (file["history/force_imbalance"][()] < (1e-7 if name == "casting" else 1e-9)).all()
 
 
-def test_heat_that_enters_the_shocked_fit_warms_it(tmp_path):
+def test_heat_that_enters_the_shocked_fit_warms_it(solved):
     """The heat rate is a curve: the trapezoidal rule gives it to 0.1 % with these increments."""
-    process = run("run", "--quiet", EXAMPLES / "shrink_shock.inp", "--out", tmp_path)
-    assert process.returncode == 0, process.stderr
-    with h5py.File(tmp_path / "shrink_shock.vtkhdf") as file:
+    with h5py.File(solved("shrink_shock")) as file:
         time, rate = file["history/time"][1:], file["history/heat_in"][1:]
     heat = np.sum(np.diff(time) * (rate[1:] + rate[:-1]) / 2) + (time[0] - 0.01) * rate[0]
     assert heat == pytest.approx(7.5e-6 * 480.0 * 280.0 * pi * 40**2 * 20, rel=2e-3)
 
 
-def test_zones_of_the_cycled_strip_are_those_of_the_independent_solution(tmp_path):
+def test_zones_of_the_cycled_strip_are_those_of_the_independent_solution(solved):
     """Every node at every increment but the one at time 3, where all that slipped back is on the
     verge of slipping again."""
-    process = run("run", "--quiet", EXAMPLES / "thermal_cycling.inp", "--out", tmp_path)
-    assert process.returncode == 0, process.stderr
-    with h5py.File(tmp_path / "thermal_cycling.vtkhdf") as file:
+    with h5py.File(solved("thermal_cycling")) as file:
         status, s = file["contact/SOLE/status"][()], file["contact/SOLE/s"][()]
     places, stuck = thermal_cycling_zones()
     np.testing.assert_allclose(s[1:], places, rtol=1e-12)
@@ -347,10 +357,8 @@ def pin_in_hole():
             for depth in (18, 14, 10)}
 
 
-def test_the_force_of_a_pin_grows_by_the_friction_of_its_seat(tmp_path):
-    deck = EXAMPLES / "pin_in_hole.inp"
-    assert run("run", "--quiet", deck, "--out", tmp_path).returncode == 0
-    with h5py.File(tmp_path / "pin_in_hole.vtkhdf") as file:
+def test_the_force_of_a_pin_grows_by_the_friction_of_its_seat(solved):
+    with h5py.File(solved("pin_in_hole")) as file:
         depth, force = file["history/time"][()], -file["contact/SEAT/shear_force"][()]
     low, high = (int(np.argmin(abs(depth - at))) for at in (15.0, 30.0))
     # The seat begins 0.5 above the end of the hub.
@@ -374,10 +382,9 @@ def valve_stem():
             ("normal_force", "GUIDE", "1."): pressure * 2 * pi * 4.0 * 8.0}
 
 
-def test_the_temperatures_of_a_valve_stem_repeat(tmp_path):
+def test_the_temperatures_of_a_valve_stem_repeat(solved):
     """And what comes in over a cycle goes out."""
-    assert run("run", "--quiet", EXAMPLES / "valve_stem.inp", "--out", tmp_path).returncode == 0
-    with h5py.File(tmp_path / "valve_stem.vtkhdf") as file:
+    with h5py.File(solved("valve_stem")) as file:
         n = len(file["VTKHDF/PointData/node_id"])
         temperature = file["VTKHDF/PointData/temperature"][()].reshape(-1, n)
         history = {k: file[f"history/{k}"][()] for k in ("time", "heat_in", "heat_out",

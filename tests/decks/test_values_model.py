@@ -44,9 +44,9 @@ def test_value_of_a_parameter(tmp_path):
             "*DSLOAD", "BODY.TOP, P, <load>")), stressed([0.0, -value, 0.0])
 
     follows(tmp_path, make, 5.0, 4.0)
+    deck = write(tmp_path / "crossed.inp", make(5.0)[0], verify(*make(4.0)[1]))
     for setting, status in (("LOAD=4.", 0), ("load=5.", 4)):
-        process = run("run", "--quiet", tmp_path / "crossed.inp", "--out", tmp_path, "--set",
-                      setting)
+        process = run("run", "--quiet", deck, "--out", tmp_path, "--set", setting)
         assert process.returncode == status, process.stderr
 
 
