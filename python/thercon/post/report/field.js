@@ -303,9 +303,10 @@ function draw(given) {
    $('panel').style.maxWidth = `min(100%, ${Math.round(640 * shape)}px)`;
    const frame = paint(places, quantity, step, scales, box, canvas);
    const thin = edges.length ? html`<path d="${curves(edges, places, box, frame)}" fill="none" stroke="var(--ink)" stroke-opacity="0.3" stroke-width="0.7"/>` : '';
+   const drawings = lines.map(line => html`<path class="rigid" d="${strokes(line, box, frame)}" fill="none" stroke="var(--ink)" stroke-width="3"/>`);
    put($('lines'), html`<svg viewBox="0 0 ${frame.width} ${frame.height}" style="overflow:hidden" role="img" aria-label="${quantity.label} on the deformed bodies, ${loadWords(all.rows[step])}">
       ${thin}<path d="${curves(boundary, places, box, frame)}" fill="none" stroke="var(--ink)" stroke-width="2"/>
-      ${lines.map(line => html`<path class="rigid" d="${strokes(line, box, frame)}" fill="none" stroke="var(--ink)" stroke-width="3"/>`)}</svg>`);
+      ${drawings}</svg>`);
    drawBars(scales, quantity, $('panel').clientHeight);
    tellRange(quantity, step, all.rows[step], given, scales.some(scale => scale.isPast.includes(true)));
    $('field-note').textContent = [
