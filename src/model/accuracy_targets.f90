@@ -81,9 +81,22 @@ contains
          if (.not. valid) deallocate (targets)
          if (.not. valid) return
          if (equals == 0) targets = whole_request(bound/100.0_dp)
-         if (equals > 0) targets = [targets, accuracy_target_type(trim(quantities(q)), &
-            bound/100.0_dp)]
+         if (equals > 0) call add_target(targets, trim(quantities(q)), bound/100.0_dp)
       end do
    end subroutine read_request
+
+   !> Adds a target of all interfaces.
+   pure subroutine add_target(targets, quantity, bound)
+      type(accuracy_target_type), allocatable, intent(inout) :: targets(:)
+      character(*), intent(in) :: quantity
+      real(dp), intent(in) :: bound
+      type(accuracy_target_type), allocatable :: longer(:)
+
+      allocate (longer(size(targets) + 1))
+      longer(:size(targets)) = targets
+      longer(size(longer))%quantity = quantity
+      longer(size(longer))%bound = bound
+      call move_alloc(longer, targets)
+   end subroutine add_target
 
 end module accuracy_targets

@@ -115,6 +115,7 @@ contains
       record%stability%unstable_modes = count(real(rates) > neutral_part*slowest)
       call find_fastest(simulation, motion, response, rates, neutral_part*slowest, &
          model%steps(record%step)%stability_modes, record)
+      call response%release()
       if (.not. is_known) call record%stability%add_doubt( &
          'the projected bodies have no sound eigenvalues')
       if (.not. bound < 1.0_dp) call record%stability%add_doubt('faster motions may grow, as '// &
@@ -145,10 +146,12 @@ contains
          if (i >= least_rates .and. bound < 1.0_dp) exit
       end do
       call projection%choose()
-      if (.not. motion%takes_rates) return
-      call response%make(model, simulation, motion, instant*response%sigma, error)
-      if (.not. allocated(error)) bound = hypot(bound, response%gain_bound(simulation%bodies, &
-         motion))
+      if (motion%takes_rates) then
+         call response%make(model, simulation, motion, instant*response%sigma, error)
+         if (.not. allocated(error)) bound = hypot(bound, response%gain_bound( &
+            simulation%bodies, motion))
+      end if
+      call response%release()
    end subroutine project
 
    !> Adds a response to the projection.

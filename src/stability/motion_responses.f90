@@ -34,6 +34,7 @@ module motion_responses
       procedure :: solve
       procedure :: gain_bound
       procedure :: stored
+      procedure :: release
    end type motion_response_type
 
 contains
@@ -99,6 +100,13 @@ contains
          self%tail = workspace%tail
       end associate
    end subroutine factor
+
+   !> Frees the factors, of which a library keeps some.
+   subroutine release(self)
+      class(motion_response_type), intent(inout) :: self
+
+      call self%heat%release()
+   end subroutine release
 
    !> Temperatures under nodal heats: (A + sigma C)^-1.
    function solve(self, bodies, nodal) result(temperature)
