@@ -12,7 +12,7 @@ module listing_tables
    use model, only: model_type, verify_type
    use print_requests, only: print_ceeq, print_creep, print_displacement, print_force, &
       print_heat, print_heat_flux, print_peeq, print_plastic, print_position, &
-      print_request_type, print_stress, print_temperature
+      print_request_type, print_solid, print_stress, print_temperature
    use quantity_types, only: of_contact_points, of_passes, quantity_type
    use records, only: contact_record_type, element_points_record_type, field_record_type, &
       increment_record_type
@@ -30,15 +30,16 @@ module listing_tables
 
    ! Keys of the quantities of *NODE PRINT and *EL PRINT, by the print_* constants, and the heads of
    ! their columns.
-   integer, parameter :: head_length = 4
+   integer, parameter :: head_length = 5
    character(*), parameter :: node_head = '    node           x           y'
    character(*), parameter :: point_head = ' element point           x           y'
-   character(*), parameter :: print_keys(print_displacement:print_creep) = [character(4) :: &
-      'U', 'NT', 'RF', 'RFL', 'S', 'HFL', 'PEEQ', 'PE', 'CEEQ', 'CE']
-   character(*), parameter :: print_heads(4, print_displacement:print_creep) = reshape([ &
+   character(*), parameter :: print_keys(print_displacement:print_solid) = [character(5) :: &
+      'U', 'NT', 'RF', 'RFL', 'S', 'HFL', 'PEEQ', 'PE', 'CEEQ', 'CE', 'SOLID']
+   character(*), parameter :: print_heads(4, print_displacement:print_solid) = reshape([ &
       character(head_length) :: 'U1', 'U2', '', '', 'NT', '', '', '', 'RF1', 'RF2', '', '', &
       'RFL', '', '', '', 'S11', 'S22', 'S33', 'S12', 'HFL1', 'HFL2', '', '', 'PEEQ', '', '', '', &
-      'PE11', 'PE22', 'PE33', 'PE12', 'CEEQ', '', '', '', 'CE11', 'CE22', 'CE33', 'CE12'], [4, 10])
+      'PE11', 'PE22', 'PE33', 'PE12', 'CEEQ', '', '', '', 'CE11', 'CE22', 'CE33', 'CE12', &
+      'SOLID', '', '', ''], [4, 11])
 
 contains
 
@@ -262,6 +263,9 @@ contains
             [1, size(nodes)])
       case (print_heat)
          if (allocated(fields%external_heat)) values = reshape(fields%external_heat(nodes), &
+            [1, size(nodes)])
+      case (print_solid)
+         if (allocated(fields%solid_fraction)) values = reshape(fields%solid_fraction(nodes), &
             [1, size(nodes)])
       case default   ! of integration points
       end select
