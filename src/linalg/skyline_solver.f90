@@ -1,5 +1,6 @@
 !> Direct solver on a skyline in profile order: Crout's U^T D U of the leading block, and its Schur
-!> complement on the last columns, the tail, which dense factors again and again.
+!> complement on the last columns, the tail, which dense factors again and again. Where values are
+!> others in some columns only, those before them keep their factors.
 !>
 !> Columns are stored from their first non-zero row on, in panels that share it (column_panels),
 !> those of the tail to the last leading row.
@@ -21,6 +22,7 @@ module skyline_solver
       private
       integer, allocatable :: position(:)   !! (order) new position of each unknown
       type(column_panels_type) :: columns = column_panels_type() !! the matrix, then its factors
+      real(dp), allocatable :: factored(:)  !! values of the lower triangle that these are of
    contains
       procedure :: analyse
       procedure :: factor
@@ -65,42 +67,68 @@ contains
       class(skyline_solver_type), intent(inout) :: self
       type(sparse_matrix_type), intent(in) :: lower
       type(error_type), allocatable, intent(out) :: error
-      integer :: bad_column, j
+      integer :: bad_column, first, j
+      real(dp) :: smallest
 
       call check_pattern(self, lower, error)
       if (allocated(error)) return
-      call set_values(self, lower)
-      call self%columns%factor(1, lost, self%smallest_pivot, bad_column)
+      first = first_changed(self, lower)
+      if (allocated(self%factored)) deallocate (self%factored)
+      call set_values(self, lower, first)
+      call self%columns%factor(first, lost, smallest, bad_column)
+      if (first > 1) smallest = min(smallest, self%smallest_pivot)
+      self%smallest_pivot = smallest
       if (bad_column > 0) then
          self%lost_unknown = findloc(self%position, bad_column, dim=1)
          call set_error(error, status_deck, 'singular matrix: a body is not held by its '// &
             'supports and contacts, or far too weakly')
          return
       end if
+      self%factored = lower%value
       call self%columns%form_schur(self%tail, self%schur)
       do j = 1, self%tail
          self%schur(j, :j) = self%schur(:j, j)
       end do
    end subroutine factor
 
-   !> Copies the values of a matrix in the pattern that was analysed.
-   pure subroutine set_values(self, lower)
+   !> First column of the first panel whose values are not those that were factored last.
+   pure integer function first_changed(self, lower) result(first)
+      type(skyline_solver_type), intent(in) :: self
+      type(sparse_matrix_type), intent(in) :: lower
+      integer :: k, row
+
+      first = 1
+      if (.not. allocated(self%factored)) return
+      first = self%order + 1
+      do row = 1, self%order
+         do k = lower%row_start(row), lower%row_start(row + 1) - 1
+            if (abs(lower%value(k) - self%factored(k)) <= 0.0_dp) cycle
+            first = min(first, max(self%position(row), self%position(lower%column(k))))
+         end do
+      end do
+      if (first <= self%order) first = self%columns%first_column(self%columns%panel(first))
+   end function first_changed
+
+   !> Copies the values of a matrix in the pattern that was analysed, from a column on.
+   pure subroutine set_values(self, lower, first)
       type(skyline_solver_type), intent(inout) :: self
       type(sparse_matrix_type), intent(in) :: lower
+      integer, intent(in) :: first          ! of a panel, or none
       integer :: i, j, k, leading, row
 
       leading = self%order - self%tail
-      self%columns%value = 0.0_dp
+      if (first <= self%order) self%columns%value(self%columns%place(self%columns%panel(first), &
+         self%columns%first_row(self%columns%panel(first)), first):) = 0.0_dp
       if (.not. allocated(self%schur)) allocate (self%schur(self%tail, self%tail))
       self%schur = 0.0_dp
       do row = 1, self%order
          do k = lower%row_start(row), lower%row_start(row + 1) - 1
             i = min(self%position(row), self%position(lower%column(k)))
             j = max(self%position(row), self%position(lower%column(k)))
-            if (i <= leading) then
-               self%columns%value(self%columns%place(self%columns%panel(j), i, j)) = lower%value(k)
-            else
+            if (i > leading) then
                self%schur(i - leading, j - leading) = lower%value(k)
+            else if (j >= first) then
+               self%columns%value(self%columns%place(self%columns%panel(j), i, j)) = lower%value(k)
             end if
          end do
       end do
@@ -178,6 +206,7 @@ contains
       class(skyline_solver_type), intent(inout) :: self
 
       if (allocated(self%position)) deallocate (self%position)
+      if (allocated(self%factored)) deallocate (self%factored)
       self%columns = column_panels_type()
    end subroutine release
 

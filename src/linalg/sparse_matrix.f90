@@ -167,6 +167,11 @@ contains
       type(triplet_list_type) :: list
       integer :: entries
 
+      if (have_same_pattern(matrix_a, matrix_b)) then
+         combined = matrix_a
+         combined%value = a*matrix_a%value + b*matrix_b%value
+         return
+      end if
       entries = 0
       if (allocated(matrix_a%value)) entries = size(matrix_a%value)
       if (allocated(matrix_b%value)) entries = entries + size(matrix_b%value)
@@ -176,6 +181,15 @@ contains
       if (entries > 0) combined = list%compress(max(matrix_a%row_count, &
          matrix_b%row_count), max(matrix_a%column_count, matrix_b%column_count))
    end function linear_combination
+
+   !> Whether two matrices have entries in the same places, and any.
+   pure logical function have_same_pattern(a, b) result(same)
+      type(sparse_matrix_type), intent(in) :: a, b
+
+      same = allocated(a%value) .and. allocated(b%value)
+      if (same) same = size(a%value) == size(b%value) .and. size(a%row_start) == size(b%row_start)
+      if (same) same = all(a%row_start == b%row_start) .and. all(a%column == b%column)
+   end function have_same_pattern
 
    pure subroutine add_entries(list, factor, matrix)
       type(triplet_list_type), intent(inout) :: list

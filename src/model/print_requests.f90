@@ -7,7 +7,7 @@ module print_requests
    public :: print_request_type
    public :: print_displacement, print_temperature, print_force, print_heat
    public :: print_stress, print_heat_flux, print_position
-   public :: print_peeq, print_plastic, print_ceeq, print_creep
+   public :: print_peeq, print_plastic, print_ceeq, print_creep, print_solid
 
    ! Quantities of a table, by their key in the deck.
    integer, parameter :: print_displacement = 1   !! U: displacements of nodes
@@ -20,7 +20,8 @@ module print_requests
    integer, parameter :: print_plastic = 8        !! PE: plastic strains
    integer, parameter :: print_ceeq = 9           !! CEEQ: equivalent creep strains
    integer, parameter :: print_creep = 10         !! CE: creep strains
-   integer, parameter :: print_position = 11      !! COORD: is in every table
+   integer, parameter :: print_solid = 11         !! SOLID: solid fractions of nodes
+   integer, parameter :: print_position = 12      !! COORD: is in every table
 
    !> One card: a table of the nodes, or of the integration points of the elements, of a set.
    type :: print_request_type

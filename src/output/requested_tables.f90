@@ -8,7 +8,7 @@ module requested_tables
    use model, only: model_type
    use print_requests, only: print_ceeq, print_creep, print_displacement, print_force, &
       print_heat, print_heat_flux, print_peeq, print_plastic, print_position, &
-      print_request_type, print_stress, print_temperature
+      print_request_type, print_solid, print_stress, print_temperature
    use quadrature, only: point_count
    use records, only: element_points_record_type, field_record_type, increment_record_type
    use transforms, only: axes_at
@@ -16,26 +16,27 @@ module requested_tables
    private
    public :: requested_table_type, table_column_type, due_tables, tables_of_step
 
-   integer, parameter :: last_quantity = print_creep, most_components = 4
-   integer, parameter :: head_length = 4
+   integer, parameter :: last_quantity = print_solid, most_components = 4
+   integer, parameter :: head_length = 5
    !> Keys of the quantities on the cards, by the print_* constants.
-   character(*), parameter :: print_keys(last_quantity) = [character(4) :: &
-      'U', 'NT', 'RF', 'RFL', 'S', 'HFL', 'PEEQ', 'PE', 'CEEQ', 'CE']
+   character(*), parameter :: print_keys(last_quantity) = [character(5) :: &
+      'U', 'NT', 'RF', 'RFL', 'S', 'HFL', 'PEEQ', 'PE', 'CEEQ', 'CE', 'SOLID']
    character(*), parameter :: heads(most_components, last_quantity) = reshape([ &
       character(head_length) :: 'U1', 'U2', '', '', 'NT', '', '', '', 'RF1', 'RF2', '', '', &
       'RFL', '', '', '', 'S11', 'S22', 'S33', 'S12', 'HFL1', 'HFL2', '', '', 'PEEQ', '', '', '', &
-      'PE11', 'PE22', 'PE33', 'PE12', 'CEEQ', '', '', '', 'CE11', 'CE22', 'CE33', 'CE12'], &
-      [most_components, last_quantity])
+      'PE11', 'PE22', 'PE33', 'PE12', 'CEEQ', '', '', '', 'CE11', 'CE22', 'CE33', 'CE12', &
+      'SOLID', '', '', ''], [most_components, last_quantity])
    ! Their names in words, the axes of their components, and their units.
    character(*), parameter :: names(last_quantity) = [character(25) :: 'displacement', &
       'temperature', 'external_force', 'external_heat', 'stress', 'heat_flux', &
-      'equivalent_plastic_strain', 'plastic_strain', 'equivalent_creep_strain', 'creep_strain']
+      'equivalent_plastic_strain', 'plastic_strain', 'equivalent_creep_strain', 'creep_strain', &
+      'solid_fraction']
    character(*), parameter :: axes_of_vector(most_components) = [character(2) :: 'x', 'y', '', '']
    character(*), parameter :: axes_of_tensor(most_components) = ['xx', 'yy', 'zz', 'xy']
    character(*), parameter :: units(last_quantity) = [character(15) :: 'length', 'temperature', &
-      'stress length^2', 'power', 'stress', 'power/length^2', '-', '-', '-', '-']
+      'stress length^2', 'power', 'stress', 'power/length^2', '-', '-', '-', '-', '-']
    logical, parameter :: is_summed(last_quantity) = [.false., .false., .true., .true., .false., &
-      .false., .false., .false., .false., .false.]
+      .false., .false., .false., .false., .false., .false.]
 
    !> A column of a table: one component of a quantity.
    type :: table_column_type
@@ -57,7 +58,7 @@ module requested_tables
       integer, allocatable :: point(:)         !! (rows) number of the point in its element
       real(dp), allocatable :: position(:, :)  !! (2, rows) x, y; unallocated without values
       type(table_column_type), allocatable :: columns(:), totals(:)
-      character(4), allocatable :: absent(:)   !! keys of quantities that the increment has not
+      character(5), allocatable :: absent(:)   !! keys of quantities that the increment has not
       integer, allocatable :: axes(:)          !! (rows) orientation of points along its axes, or 0
    end type requested_table_type
 
@@ -308,6 +309,9 @@ contains
             [1, size(nodes)])
       case (print_heat)
          if (allocated(fields%external_heat)) values = reshape(fields%external_heat(nodes), &
+            [1, size(nodes)])
+      case (print_solid)
+         if (allocated(fields%solid_fraction)) values = reshape(fields%solid_fraction(nodes), &
             [1, size(nodes)])
       case default   ! of integration points
       end select

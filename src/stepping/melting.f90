@@ -24,16 +24,16 @@ module melting
    !> where the interval is a part of it in which temperatures change
    real(dp), parameter :: rounding = 1.0e-13_dp
 
-   !> A node of an element that melts.
+   !> A node of a material that melts.
    type :: melting_node_type
       integer :: node = 0                !! index
       integer :: material = 0            !! index
       integer :: row = 0                 !! latent heat that T' is in the interval of, or 0
       real(dp) :: at = 0.0_dp            !! T' [temperature]
-      real(dp) :: volume = 0.0_dp        !! its part of the element [length^3]
+      real(dp) :: volume = 0.0_dp        !! its part of the elements of the material [length^3]
    end type melting_node_type
 
-   !> The nodes of all elements that melt.
+   !> The nodes of all materials that melt.
    type :: melting_type
       type(melting_node_type), allocatable, private :: nodes(:)
       logical :: acts = .false.          !! whether there are any in steps that store heat
@@ -45,7 +45,6 @@ module melting
       procedure :: move
       procedure :: slopes
       procedure :: contents
-      procedure :: led_contents
       procedure :: unresolved
       procedure :: find_solid_time
    end type melting_type
@@ -56,30 +55,30 @@ contains
    pure subroutine prepare(self, model)
       class(melting_type), intent(inout) :: self
       type(model_type), intent(in) :: model
-      type(melting_node_type) :: node
-      real(dp) :: lumped(nodes_per_element)
-      integer :: e, i, n, q
+      real(dp) :: lumped(nodes_per_element), volume(size(model%mesh%node_number))
+      integer :: e, i, m
 
-      self%acts = any(model%steps%is_transient) .and. any(melts(model%materials))
-      if (.not. self%acts) return
-      associate (mesh => model%mesh, sections => model%sections)
-         allocate (self%nodes(sum(element_node_count(mesh%element_kind), &
-            mask=melts(model%materials(sections(mesh%element_section)%material)))))
-         i = 0
-         do e = 1, size(mesh%element_kind)
-            node%material = sections(mesh%element_section(e))%material
-            if (.not. melts(model%materials(node%material))) cycle
-            n = element_node_count(mesh%element_kind(e))
-            lumped = lumped_volumes(mesh, sections, e)
-            do q = 1, n
-               i = i + 1
-               node%node = mesh%element_nodes(q, e)
-               node%volume = lumped(q)
-               self%nodes(i) = node
+      allocate (self%nodes(0))
+      if (any(model%steps%is_transient)) then
+         associate (mesh => model%mesh, sections => model%sections)
+            do m = 1, size(model%materials)
+               if (.not. melts(model%materials(m))) cycle
+               volume = 0.0_dp
+               do e = 1, size(mesh%element_kind)
+                  if (sections(mesh%element_section(e))%material /= m) cycle
+                  lumped = lumped_volumes(mesh, sections, e)
+                  associate (n => element_node_count(mesh%element_kind(e)))
+                     associate (nodes => mesh%element_nodes(:n, e))
+                        volume(nodes) = volume(nodes) + lumped(:n)
+                     end associate
+                  end associate
+               end do
+               self%nodes = [self%nodes, pack([(melting_node_type(i, m, volume=volume(i)), i=1, &
+                  size(volume))], volume > 0.0_dp)]
             end do
-         end do
-      end associate
-      self%acts = i > 0
+         end associate
+      end if
+      self%acts = size(self%nodes) > 0
    end subroutine prepare
 
    !> Starts a stage at the temperatures at its start.
@@ -141,39 +140,30 @@ contains
       end do
    end function slopes
 
-   !> Latent heat on the nodes.
-   pure function contents(self, model, temperature)
+   !> Latent heat on the nodes, or the same by content and slope at T'.
+   pure function contents(self, model, temperature, led)
       class(melting_type), intent(in) :: self
       type(model_type), intent(in) :: model
       real(dp), intent(in) :: temperature(:)                 !! (nodes)
+      logical, intent(in) :: led                             !! whether by these
       real(dp) :: contents(size(temperature))                !! (nodes) [energy]
+      real(dp) :: content
       integer :: i
 
       contents = 0.0_dp
       do i = 1, size(self%nodes)
          associate (node => self%nodes(i))
-            contents(node%node) = contents(node%node) + node%volume*latent_content( &
-               model%materials(node%material), temperature(node%node))
+            associate (there => temperature(node%node))
+               if (led) then
+                  content = led_content(model, node, there)
+               else
+                  content = latent_content(model%materials(node%material), there)
+               end if
+            end associate
+            contents(node%node) = contents(node%node) + node%volume*content
          end associate
       end do
    end function contents
-
-   !> The same by content and slope at T'.
-   pure function led_contents(self, model, temperature) result(contents)
-      class(melting_type), intent(in) :: self
-      type(model_type), intent(in) :: model
-      real(dp), intent(in) :: temperature(:)                 !! (nodes)
-      real(dp) :: contents(size(temperature))                !! (nodes) [energy]
-      integer :: i
-
-      contents = 0.0_dp
-      do i = 1, size(self%nodes)
-         associate (node => self%nodes(i))
-            contents(node%node) = contents(node%node) + node%volume*led_content(model, node, &
-               temperature(node%node))
-         end associate
-      end do
-   end function led_contents
 
    pure real(dp) function led_content(model, node, temperature) result(content)
       type(model_type), intent(in) :: model

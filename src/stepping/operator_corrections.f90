@@ -326,8 +326,8 @@ contains
       real(dp), intent(in) :: temperature(:)                 ! (nodes)
 
       associate (n => size(temperature))
-         self%values(:n) = self%values(:n) + (self%melting%led_contents(model, temperature) - &
-            self%melting%contents(model, temperature))/self%stage%duration
+         self%values(:n) = self%values(:n) + (self%melting%contents(model, temperature, .true.) - &
+            self%melting%contents(model, temperature, .false.))/self%stage%duration
       end associate
    end subroutine lead_melting
 
@@ -343,7 +343,7 @@ contains
       self%renewed_at = merge(self%passes, 0, self%asks_operators)
       self%slow_passes = 0
       call start_mixing(self)
-      deallocate (self%scale)
+      if (self%asks_operators) deallocate (self%scale)
       self%heat_before = self%heat_beyond(model, bodies, before%temperature)
       self%values = corrections_of(self, model, bodies, at%temperature, at%displacement)
       if (self%asks_capacity) call lead_melting(self, model, at%temperature)
@@ -572,7 +572,8 @@ contains
       do i = 1, size(self%elements)
          call self%contents%add_contents(model%mesh, self%elements(i), temperature, contents)
       end do
-      if (self%melting%acts) contents = contents + self%melting%contents(model, temperature)
+      if (self%melting%acts) contents = contents + self%melting%contents(model, &
+         temperature, .false.)
    end function true_contents
 
    !> Largest heat and forces of a solution, by which what is left over is small; at least those of

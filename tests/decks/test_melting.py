@@ -76,6 +76,24 @@ def test_heat_that_leaves_is_what_a_front_gives_off(tmp_path, kind):
     assert "the smallest interval is 1e-4 of latent over specific heat" in listing
 
 
+def test_tables_of_nodes_have_the_solid_fraction(tmp_path):
+    """Half of the latent heat is given off after 1."""
+    cards = [*melting(["10., 20., 30."], size=1), *start(30.0), *step(
+        "*DFLUX", "BODY, BF, -15.", "*NODE PRINT", "SOLID", times="0.25, 1.")]
+    process = run("run", "--quiet", write(tmp_path / "half.inp", cards), "--out", tmp_path)
+    assert process.returncode == 0, process.stderr
+    table = re.findall(r"node +x +y +SOLID\n((?: +\d.*\n)+)", (tmp_path / "half.lst").read_text())[-1]
+    assert [float(line.split()[-1]) for line in table.splitlines()] == pytest.approx(4 * [0.5])
+
+
+def test_a_solid_fraction_needs_latent_heat(tmp_path):
+    cards = [card for card in melting(["10., 20., 30."], size=1)
+             if card not in ("*LATENT HEAT", "10., 20., 30.")]
+    process = run("run", "--quiet", write(tmp_path / "none.inp", [*cards, *start(30.0), *step(
+        "*DFLUX", "BODY, BF, -15.", "*NODE PRINT", "SOLID", times="0.25, 1.")]), "--out", tmp_path)
+    assert "SOLID of *NODE PRINT is not there without *LATENT HEAT" in process.stderr
+
+
 def test_steady_steps_say_that_latent_heat_does_nothing(tmp_path):
     cards = [*melting(["1., 1., 2."]), *start(1.2),
              *step("*BOUNDARY", "BODY.LEFT, 11, 11, 0.", "BODY.RIGHT, 11, 11, 3.",

@@ -10,10 +10,11 @@ module deck_builder_controls
       thermal_scheme_type
    use deck_context, only: deck_type
    use kinds, only: dp
+   use materials, only: melts
    use steps, only: step_controls_type
    use print_requests, only: print_ceeq, print_creep, print_displacement, print_force, print_heat, &
       print_heat_flux, print_peeq, print_plastic, print_position, print_request_type, &
-      print_stress, print_temperature
+      print_solid, print_stress, print_temperature
    use spelling, only: known_choices
    use text, only: split_words, string_type, to_text, to_upper
    use time_points, only: time_points_type
@@ -25,10 +26,10 @@ module deck_builder_controls
    real(dp), parameter :: consistent = 1.0e-9_dp   !! sums of coefficients count as equal, relative
 
    ! Keys of a card: those that are computed, what they are, and those that only CalculiX has.
-   character(*), parameter :: node_keys = 'U/NT/TS/RF/RFL', &
+   character(*), parameter :: node_keys = 'U/NT/TS/RF/RFL/SOLID', &
       element_keys = 'S/HFL/COORD/PEEQ/PE/CEEQ/CE'
-   integer, parameter :: node_quantities(5) = [print_displacement, print_temperature, &
-      print_temperature, print_force, print_heat]
+   integer, parameter :: node_quantities(6) = [print_displacement, print_temperature, &
+      print_temperature, print_force, print_heat, print_solid]
    integer, parameter :: element_quantities(7) = [print_stress, print_heat_flux, print_position, &
       print_peeq, print_plastic, print_ceeq, print_creep]
    character(*), parameter :: foreign_node_keys = &
@@ -306,6 +307,8 @@ contains
                if (.not. any(law%strains(1) > 0)) needed = 'PLASTIC'
             case (print_ceeq, print_creep)
                if (.not. any(law%strains(2) > 0)) needed = 'CREEP'
+            case (print_solid)
+               if (.not. any(melts(deck%model%materials))) needed = 'LATENT HEAT'
             case default   ! of all materials
             end select
          end associate
