@@ -1,6 +1,6 @@
 !> A trial solution of an increment: its data, its workspace, and the state at its end.
 module increment_data
-   use contact_system, only: contact_state_type
+   use contact_system, only: closing_law_type, contact_state_type
    use contact_workspace, only: contact_workspace_type
    use controls, only: fixed_point_type, start_type
    use edge_heat, only: edge_integral_type, edge_heat_type
@@ -51,6 +51,8 @@ module increment_data
       real(dp) :: size_ratio = 1.0_dp                !! dt_i/dt_(i-1), 1 in the first increment
       !> (m) omega*^0 where the increment was solved before with other corrections of its operators
       real(dp), allocatable :: omega_start(:)
+      !> (m) laws of closing contact points that a solution on faces placed elsewhere had
+      type(closing_law_type), allocatable :: closing_start(:)
       type(field_load_type) :: heat         !! load of (3.4)
       type(field_load_type) :: force        !! load of (2.4)
       real(dp), allocatable :: held_jump(:) !! (m) jump where both temperatures are prescribed

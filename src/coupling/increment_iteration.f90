@@ -61,6 +61,7 @@ contains
       type(fixed_point_type) :: first
       real(dp) :: omega_start(size(trial%next%omega))
       integer :: before
+      logical :: is_near
 
       associate (controls => trial%data%fixed_point, workspace => trial%workspace, &
          next => trial%next)
@@ -73,6 +74,10 @@ contains
          first = controls
          if (heat%is_divided(bodies) .and. controls%method == method_newton) first = &
             with_method(controls, method_anderson)
+         ! On faces placed anew the solution before is near, and whole steps lead on from it.
+         is_near = allocated(trial%data%closing_start) .and. &
+            any(first%method == [method_anderson, method_zaitsev])
+         if (is_near) first%g = 1.0_dp
          if (workspace%resolves_edge) then
             call use_method(bodies, heat, first, trial, error)
             if (.not. allocated(error)) return
@@ -83,7 +88,7 @@ contains
             workspace%resolves_edge = .false.
             workspace%edge = edge_heat_type()
          end if
-         if (first%method /= controls%method) then
+         if (first%method /= controls%method .or. is_near) then
             call use_method(bodies, heat, first, trial, error)
             if (.not. allocated(error)) return
             if (error%status /= status_no_convergence) return
@@ -257,6 +262,7 @@ contains
       type(increment_workspace_type), intent(inout) :: workspace
 
       workspace%contact%closing = closing_law_type()
+      if (allocated(data%closing_start)) workspace%contact%closing = data%closing_start
       if (allocated(workspace%pass%coordinate)) deallocate (workspace%pass%coordinate)
       workspace%pass%omega = omega
       workspace%pass%image = omega

@@ -156,6 +156,7 @@ module records
       real(dp) :: heat_friction = 0.0_dp     !! made by friction; NaN without it [power]
       !> Work of friction less that of the drive, over the former, where faces slide and are heated
       real(dp), allocatable :: drive_excess
+      real(dp) :: slip_part = 0.0_dp         !! largest slip of a contact point over its spacing
       real(dp) :: heat_imbalance = 0.0_dp    !! of (3.4), relative to the largest rate
       !> Of (3.3) at the end of the increment, relative to the largest rate.
       real(dp) :: heat_imbalance_pointwise = 0.0_dp

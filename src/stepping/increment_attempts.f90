@@ -4,7 +4,7 @@
 module increment_attempts
    use clock, only: wall_seconds
    use constraint_checks, only: check_prescribed
-   use contact_system, only: contact_open
+   use contact_system, only: closing_law_type, contact_open
    use controls, only: method_newton
    use coupled_increment, only: differ, judge_solution
    use face_wear, only: wear_by_pressure, wear_faces
@@ -51,6 +51,8 @@ module increment_attempts
       real(dp), allocatable :: wear_by_pressure(:)
       !> (m) conductance of a solution whose contact points lay elsewhere, or wore otherwise
       real(dp), allocatable :: omega_start(:)
+      !> (m) its laws of closing contact points, likewise
+      type(closing_law_type), allocatable :: closing_start(:)
    end type attempt_type
 
 contains
@@ -221,6 +223,7 @@ contains
       logical :: is_placed, is_worn
 
       if (allocated(attempt%omega_start)) deallocate (attempt%omega_start)
+      if (allocated(attempt%closing_start)) deallocate (attempt%closing_start)
       do turn = 1, most_turns
          call solve_corrected(run, model, attempt, error)
          if (allocated(error)) return
@@ -243,6 +246,8 @@ contains
          if (allocated(error)) return
          call run%loads%move_to(attempt%stage%clock, model)   ! reducing bodies moves them
          call carry_to_faces(run%bodies, attempt%before)
+         attempt%closing_start = attempt%workspace%contact%closing
+         attempt%closing_start%start = attempt%before%contact%tangential
          attempt%next%contact%slip_origin = attempt%before%contact%slip_origin
       end do
       call set_error(error, status_no_convergence, trim(merge( &
@@ -389,6 +394,7 @@ contains
          call begin_increment(bodies, step, attempt%before, attempt%trial_type)
          data%is_corrected = run%corrections%corrects
          if (allocated(attempt%omega_start)) data%omega_start = attempt%omega_start
+         if (allocated(attempt%closing_start)) data%closing_start = attempt%closing_start
          if (allocated(attempt%wear_by_pressure)) data%wear_by_pressure = attempt%wear_by_pressure
          ! The last of several solutions is judged alone.
          data%fixed_point%finds_gain = data%fixed_point%finds_gain .and. .not. &

@@ -21,6 +21,7 @@ module increment_control
    real(dp), parameter :: alike = 1.0e-9_dp        !! relative difference of sizes that is none
    real(dp), parameter :: allowance = 1.2_dp       !! of what a step allows its increments
    real(dp), parameter :: aim = 0.7_dp             !! part of it that they are made for
+   real(dp), parameter :: slip_aim = 0.95_dp       !! part of the spacing that the next one may slip
    real(dp), parameter :: same = 0.1_dp            !! relative difference of errors that are alike
 
    !> Position in the steps, and size of the next increment.
@@ -296,9 +297,10 @@ contains
       type(model_type), intent(in) :: model
       type(step_clock_type), intent(in) :: clock             !! its end
       type(increment_record_type), optional, intent(in) :: record   !! of it, where it was solved
-      real(dp) :: increment_size
+      real(dp) :: increment_size, size_before
 
       increment_size = clock%step_time - self%step_time
+      size_before = self%largest
       self%step_time = clock%step_time
       self%increments = self%increments + 1
       self%increments_of_step = self%increments_of_step + 1
@@ -317,6 +319,11 @@ contains
          end if
       end associate
       self%cut_backs = 0
+      ! The next one slips as fast as this one. Sizes that are halves of each other stay so.
+      if (.not. (present(record) .and. size_before < self%largest)) return
+      if (record%slip_part*self%largest <= increment_size) return
+      self%largest = max(size_before, merge(0.0_dp, slip_aim*increment_size/record%slip_part, &
+         adapts_increments(model%steps(self%step))))
    end subroutine accept
 
    !> Whether an increment that failed may be tried again with a smaller size, if it is not the

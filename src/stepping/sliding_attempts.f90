@@ -41,6 +41,7 @@ contains
             if (.not. points%follows_sliding) cycle
             associate (spacing => points%edge/((points%side_nodes - 1)*points%node_spacings))
                k = maxloc(slip(first:first + size(spacing) - 1)/spacing, dim=1)
+               record%slip_part = max(record%slip_part, slip(first - 1 + k)/spacing(k))
                if (slip(first - 1 + k) <= (1.0_dp + over_spacing)*spacing(k)) cycle
                beyond = slip(first - 1 + k)
                words = ' in an increment, more than the spacing of nodes, '// &

@@ -233,6 +233,15 @@ def test_a_long_increment_is_cut_back_to_one_spacing(tmp_path):
     assert np.max(np.abs(np.diff(movement, axis=0))) < 0.2143
 
 
+def test_increments_that_were_cut_back_grow_no_farther_than_slip_allows(tmp_path):
+    """Twenty increments of 0.3 are wanted, where nodes are 0.214 apart."""
+    deck = write(tmp_path / "deck.inp", sliding(6.0, increment=0.05, heat=False))
+    solve(deck)
+    rows = np.loadtxt(deck.with_suffix(".sta"), skiprows=1)
+    assert rows[:, 5].sum() <= 2   # how often one was
+    assert len(rows) < 1.7 * 6.0 / 0.214
+
+
 def stderr(folder, cards, status):
     process = run("run", "--quiet", write(folder / "deck.inp", cards), "--out", folder)
     assert process.returncode == status, process.stderr
