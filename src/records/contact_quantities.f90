@@ -62,7 +62,7 @@ module contact_quantities
       is_on_faces=.true., &
       description='contact state: 0 open, 1 slip, 2 stick; 1 where closed without friction'), &
       quantity_type('gap', of_contact_points, 'length', head='gap', width=10, is_on_faces=.true., &
-      description='gap, >= 0'), &
+      description='gap, >= 0; NaN where no master is opposite'), &
       quantity_type('pressure', of_contact_points, 'stress', head='p', width=10, &
       is_on_faces=.true., description='contact pressure, >= 0 in compression'), &
       quantity_type('shear', of_contact_points, 'stress', head='tau', width=11, &
@@ -125,7 +125,7 @@ contains
       case ('status')
          values = real(contact%contact_state, dp)
       case ('gap')
-         values = or_nan(contact%gap)
+         values = of_masters(or_nan(contact%gap))
       case ('pressure')
          values = or_nan(contact%pressure)
       case ('shear')
@@ -143,7 +143,7 @@ contains
       case ('slave_temperature')
          values = or_nan(contact%slave_temperature)
       case ('master_temperature')
-         values = or_nan(contact%master_temperature)
+         values = of_masters(or_nan(contact%master_temperature))
       case ('conductance')
          values = or_nan(contact%conductance)
       case ('heat_flux')
@@ -160,6 +160,16 @@ contains
          filled = ieee_value(1.0_dp, ieee_quiet_nan)
          if (allocated(given)) filled = given
       end function or_nan
+
+      !> Values that take a master opposite; NaN without.
+      pure function of_masters(given) result(filled)
+         real(dp), intent(in) :: given(:)
+         real(dp) :: filled(size(given))
+
+         filled = given
+         if (.not. allocated(contact%is_beyond)) return
+         where (contact%is_beyond) filled = ieee_value(1.0_dp, ieee_quiet_nan)
+      end function of_masters
    end function contact_values
 
    !> A quantity of the contact points that the mesh gives.

@@ -45,6 +45,8 @@ module records
       !> along the tangent, of the slave against the master since the start [length]
       real(dp), allocatable :: movement(:)
       real(dp), allocatable :: smallest_gap(:)         !! smallest gamma so far [length]
+      !> Whether nothing is opposite; unallocated where faces do not slide
+      logical, allocatable :: is_beyond(:)
       !> Depth that each face has lost; unallocated where faces do not wear [length]
       real(dp), allocatable :: wear_slave(:), wear_master(:)
       real(dp) :: worn_volume(2) = 0.0_dp              !! of slave and master [length^3]

@@ -232,6 +232,7 @@ contains
          record%worn_volume = [sum(points%weight*record%wear_slave), &
             sum(points%weight*record%wear_master)]
       end if
+      if (allocated(points%is_beyond)) record%is_beyond = points%is_beyond
       if (.not. points%follows_sliding) record%slide = worst_slide(points, closed, record%movement)
       if (allocated(bodies%thermal%matrix%value)) then
          allocate (record%slave_temperature(size(closed)), record%master_temperature( &
