@@ -241,7 +241,8 @@ contains
       do i = 1, size(request%quantities)
          associate (q => request%quantities(i))
             values = nodal_values(q, fields, table%member)
-            if (size(values, 1) == 0) table%absent = [table%absent, print_keys(q)]
+            if (size(values, 1) == 0) table%absent = [character(5) :: table%absent, &
+               print_keys(q)]
             do k = 1, size(table%totals)
                associate (total => table%totals(k))
                   if (total%quantity /= q) cycle
@@ -332,7 +333,7 @@ contains
             if (size(values, 1) > 0) then
                column%values = values(column%component, :)
             else if (column%component == 1) then
-               table%absent = [table%absent, print_keys(column%quantity)]
+               table%absent = [character(5) :: table%absent, print_keys(column%quantity)]
             end if
          end associate
       end do
