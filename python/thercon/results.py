@@ -7,8 +7,10 @@ import numpy as np
 
 from .post.checked_file import numbers
 from .post.errors import UserError, nearest_name
+from .post.report.listing import read_listing
 from .post.result import Result as ResultFile
 from .post.result import text
+from .post.set_histories import KINDS, OF_MEMBERS, member_labels
 
 ESTIMATED = ("value", "uncertainty", "change", "scatter", "iteration")
 
@@ -21,19 +23,23 @@ class Arrays(Mapping):
     times: (n,) total times of the rows.
     """
 
-    def __init__(self, what, readers, units, times):
-        """Take what the arrays are of, in words, and for each name a procedure that reads it."""
+    def __init__(self, what, readers, units, times, members=()):
+        """Take what the arrays are of, in words, for each name a procedure that reads it, and the
+        labels of the members of a set."""
         self._what, self._readers, self._known = what, readers, {}
-        self.units, self.times = units, times
+        self.units, self.times, self._members = units, times, members
 
     def __getitem__(self, name):
         """Return the array; (n, ...) where it has one row for each time."""
         if name not in self._readers:
-            hint = nearest_name(str(name), self._readers)
-            raise KeyError(f"{self._what} has no {name}{hint}; it has {', '.join(self._readers)}")
+            raise self._missing(name, self._readers)
         if name not in self._known:
             self._known[name] = self._readers[name]()
         return self._known[name]
+
+    def _missing(self, name, known):
+        hint = nearest_name(str(name), known)
+        return KeyError(f"{self._what} has no {name}{hint}; it has {', '.join(known)}")
 
     def __getattr__(self, name):
         """Return the array of this name."""
@@ -62,7 +68,8 @@ class Arrays(Mapping):
 
     def table(self):
         """Return the arrays with one or a few numbers for each time as a pandas data frame, whose
-        index is the time; columns of arrays (n, k) are numbered from 1. `attrs["units"]` has the
+        index is the time; columns of arrays (n, k) are numbered from 1, those of sets named by node
+        or element and integration point: `temperature_31`, `stress_xx_7.2`. `attrs["units"]` has the
         units."""
         import pandas
 
@@ -71,14 +78,39 @@ class Arrays(Mapping):
             values = self[name]
             if not isinstance(values, np.ndarray) or len(values) != len(self.times):
                 continue
+            if self._members and name in OF_MEMBERS:
+                continue
             if values.ndim == 1:
                 columns[name] = values
+            elif values.ndim == 2 and self._members:
+                columns |= {f"{name}_{each}": column for each, column in zip(self._members, values.T)}
             elif values.ndim == 2:
                 columns |= {f"{name} {k + 1}": column for k, column in enumerate(values.T)}
         columns.pop("time", None)
         frame = pandas.DataFrame(columns, index=pandas.Index(self.times, name="time"))
         frame.attrs["units"] = dict(self.units)
         return frame
+
+
+class History(Arrays):
+    """Arrays of `/history`; the sets of *NODE PRINT and *EL PRINT are found by name in any case, too:
+    `history["TOP"]` is `history.nodes["TOP"]`."""
+
+    def __getitem__(self, name):
+        """Return the array, or the `Arrays` of the set."""
+        if name in self._readers:
+            return super().__getitem__(name)
+        places = {f'{kind}["{each}"]': (kind, each) for kind in KINDS if kind in self._readers
+                  for each in self[kind]}
+        found = [place for place, (_, each) in places.items() if each.upper() == str(name).upper()]
+        if len(found) == 1:
+            kind, each = places[found[0]]
+            return self[kind][each]
+        if found:
+            raise KeyError(f"{name} is a set of nodes and one of elements: "
+                           f"{' or '.join(f'history.{place}' for place in found)}")
+        sets = [each for _, each in places.values()]
+        raise self._missing(name, [*self._readers, *sets])
 
 
 class Interface(Arrays):
@@ -258,14 +290,16 @@ class Result:
     def history(self):
         """Arrays of `/history`, (n,) or (n, bodies) each, as `Arrays`: time, load, heat_in ...
 
-        Groups in it are `Arrays`, too: `history["GROUP"].temperature`. `table()` is a data frame.
+        `history["SET"]` are those of a set of *NODE PRINT or *EL PRINT; of a name that sets of nodes
+        and of elements have, `history.nodes["SET"]` and `history.elements["SET"]`. `table()` is a
+        data frame.
 
         >>> result.history.heat_in.round(3)
         array([2.057, 3.   , 3.429, 3.6  ])
         >>> result.history.table().loc[1.0, "heat_in"].round(3)
         np.float64(3.6)
         """
-        return self._group("history")
+        return self._group("history", History)
 
     @property
     def convergence(self):
@@ -282,10 +316,10 @@ class Result:
         """Arrays of `/accuracy`, one value for each round of a requested accuracy, as `Arrays`."""
         return self._group("accuracy")
 
-    def _group(self, name):
+    def _group(self, name, kind=Arrays):
         if name not in self._file.file:
             raise UserError(f"{self.path}: has no /{name}")
-        return arrays_of(self._file.file[name], f"/{name}", self.times)
+        return arrays_of(self._file.file[name], f"/{name}", self.times, kind)
 
     @cached_property
     def errors(self):
@@ -366,16 +400,38 @@ class Result:
     def checks(self):
         """The *VERIFY checks of the run as a pandas data frame, in the order of the deck: quantity,
         where, expected, found, deviation, tolerance, passed ... (docs/results.md). A check that fails
-        raises no exception. Empty in a result of `thercon.open`, and where `resume` skipped the run.
+        raises no exception. Of a result of `thercon.open`, and where `resume` skipped the run, they are
+        those of the listing beside it, with its digits, and `where` of at most 16 characters.
         """
         import pandas
 
-        return pandas.DataFrame(self.document.get("checks", []))
+        attributes = self._file.file["run"].attrs
+        count = attributes.get("verify_passed", 0) + attributes.get("verify_failed", 0)
+        rows = self.document.get("checks") or (checks_of_listing(self._file) if count else [])
+        return pandas.DataFrame(rows)
 
     @property
     def _estimated(self):
         """Names of what has numerical uncertainties."""
         return [*self.interfaces, *self._file.maxima, "increment"]
+
+
+def checks_of_listing(file):
+    """Return the checks that the listing beside a result has, as `--json` prints them."""
+    path = file.path.with_suffix(".lst")
+    listing = read_listing(path, file.deck)
+    if listing is None:
+        raise UserError(f"{file.path}: its checks are in its listing, and {path} is missing or of "
+                        "another deck")
+    last = file.history["time"][-1]
+    return [{"quantity": each.quantity, "where": each.where, "expected": float(each.expected),
+             "tolerance": float(each.allowed),
+             "kind": "relative" if each.measure == "REL" else "absolute",
+             "passed": each.verdict == "PASS",
+             **({"reason": each.failed} if each.failed else
+                {"time": last if each.time == "LAST" else float(each.time),
+                 "found": float(each.found), "deviation": float(each.deviation)})}
+            for each in listing.checks]
 
 
 def estimate_of(entry):
@@ -387,9 +443,10 @@ def estimate_of(entry):
     return (np.nan, why) if why else (rows[-1, 1], "")
 
 
-def arrays_of(group, what, times):
+def arrays_of(group, what, times, kind=Arrays):
     """Return the datasets of a group of the file, and the groups in it, as `Arrays`."""
     readers, units = {}, {}
+    word = next((KINDS[each] for each in KINDS if what.startswith(f"/history/{each}/")), None)
     if "time" in group:
         times = numbers(group, "time", like=(None,))
     for key, item in group.items():
@@ -400,4 +457,4 @@ def arrays_of(group, what, times):
             units[key] = text(item.attrs.get("unit", ""))
         else:
             readers[key] = lambda item=item: [text(each) for each in np.ravel(item[()])]
-    return Arrays(what, readers, units, times)
+    return kind(what, readers, units, times, word and member_labels(group, word))

@@ -1,5 +1,6 @@
 """Runs of decks: each is a process of the program `thercon`."""
 
+import csv
 import json
 import os
 import re
@@ -24,8 +25,8 @@ class Message(NamedTuple):
 
     severity: str       # error, warning or note
     message: str        # one sentence
-    file: str           # as given
-    line: int | None    # from 1; None for the deck as a whole
+    file: str           # as given; "table" for the one of `run_many`
+    line: int | None    # from 1; None for the deck as a whole, and for a table
     column: int | None  # from 1, likewise
 
     def __str__(self):
@@ -110,7 +111,7 @@ def run_many(deck, table, *, jobs=1, out=".", quantities=None, accuracy=None, er
     `status` (exit status), `outcome` and `reason` in words, counts and times, then the results at
     the last increment by the names of *VERIFY with their uncertainties (docs/batch.md). A row that
     fails has its status and reason, and NaN for the results. Raises RunError where nothing runs: the
-    table has a mistake, or the folder cannot be written. KeyError: no row has a quantity.
+    table has a mistake, told by row, from 1, and column; or the folder cannot be written. KeyError: no row has a quantity.
 
     Calling it again with the same rows goes on after an interruption: rows that are finished are not
     solved again. This is `thercon run DECK --table VALUES.csv --resume`.
@@ -135,7 +136,7 @@ def run_many(deck, table, *, jobs=1, out=".", quantities=None, accuracy=None, er
         accuracy=accuracy, errors=errors, limit=limit, width=width, resume=True)
     process = execute("run", deck, "--table", given, "--jobs", jobs, "--out", out, "--quiet", *options)
     if not found.exists():
-        raise RunError(deck, process.returncode, messages_of(process.stderr))
+        raise RunError(deck, process.returncode, of_table(messages_of(process.stderr), given))
     frame = pandas.read_csv(found, keep_default_na=False, na_values=[""])
     frame.index = table.index
     frame[table.columns] = table
@@ -184,7 +185,7 @@ def execute(*arguments):
         except KeyboardInterrupt:
             process.terminate()
             process.communicate()
-            raise
+            raise KeyboardInterrupt from None  # without the frames of waiting
     return subprocess.CompletedProcess(command, process.returncode, *printed)
 
 
@@ -208,6 +209,23 @@ def messages_of(printed):
     found = filter(None, map(LINE.fullmatch, printed.splitlines()))
     return [Message(each["severity"], each["message"], each["file"],
                     *(each[key] and int(each[key]) for key in ("line", "column"))) for each in found]
+
+
+def of_table(messages, path):
+    """Return messages with places in the file of a table as those of rows, from 1, and columns."""
+    lines = path.read_text().splitlines()
+    found = []
+    for each in messages:
+        if each.file == str(path):
+            place = ""
+            if each.line:
+                before = lines[each.line - 1].encode()[:each.column - 1].decode(errors="replace")
+                names, cells = (next(csv.reader([line])) for line in (lines[0], before + "|"))
+                row = f"row {each.line - 1}, " if each.line > 1 else ""
+                place = f"{row}column {names[len(cells) - 1]}: "
+            each = Message(each.severity, place + each.message, "table", None, None)
+        found.append(each)
+    return found
 
 
 def result_path(deck, out):

@@ -44,3 +44,17 @@ def test_a_film_acts_on_the_free_sides(tmp_path, data, length):
             *heat("*BOUNDARY", *(f"BODY.{side}, 11, 11, {HOT!r}" for side in SIDES),
                   "*SFILM", f"SKIN, F, {COLD!r}, {FILM!r}")]
     judge(tmp_path, deck, [("heat_in", "", "LAST", FILM * (HOT - COLD) * length, 1e-9)])
+
+
+@pytest.mark.parametrize(("data", "length"), [
+    ([", NAME=SKIN", "BODY"], 2 * (WIDTH + HEIGHT)),
+    ([", NAME=SKIN, TYPE=NODE", "BODY.BOTTOM", "BODY.LEFT", "BODY.RIGHT"], WIDTH + 2 * HEIGHT)])
+def test_a_film_acts_on_faces_in_contact_unless_the_others_are_named(tmp_path, data, length):
+    deck = [*mesh("BODY", XS, YS), *mesh("LID", XS, [y + YS[-1] for y in YS], first=1001)]
+    for name in ("BODY", "LID"):
+        deck += material(name, (YOUNG, POISSON), conductivity=2.0)
+    deck += ["*SURFACE INTERACTION, NAME=I", "*GAP CONDUCTANCE", "1., 0.", "*CONTACT PAIR, INTERACTION=I",
+             "BODY.TOP, LID.BOTTOM", f"*SURFACE{data[0]}", *data[1:], *heat(
+                 "*BOUNDARY", *(f"{name}.{side}, 11, 11, {HOT!r}" for name in ("BODY", "LID")
+                                for side in SIDES), "*SFILM", f"SKIN, F, {COLD!r}, {FILM!r}")]
+    judge(tmp_path, deck, [("heat_in", "", "LAST", FILM * (HOT - COLD) * length, 1e-9)])

@@ -21,6 +21,7 @@ from test_prints import BODY, HELD, static  # noqa: E402
 from test_reached import WARM, judged  # noqa: E402
 from test_set_histories import solve  # noqa: E402
 
+import thercon  # noqa: E402
 from thercon.post.cli import main as plot  # noqa: E402
 from thercon.post.report.cli import main as report  # noqa: E402
 
@@ -54,6 +55,7 @@ def test_every_set_has_a_picture_and_a_table(result, tmp_path, capsys):
             np.testing.assert_array_equal(table[f"displacement_y_{node}"],
                                           group["displacement_y"][:, k])
         np.testing.assert_array_equal(table["increment"], [2, 4, 5])
+        assert set(thercon.open(result).history["block.top"].table()) == {*table} - {"time", "load"}
         stress = file["history/elements/BLOCK/stress_yy"][:, 9]
     np.testing.assert_array_equal(rows(tmp_path / "deck.history-BLOCK.csv")["stress_yy_2.1"], stress)
     total = rows(tmp_path / "deck.history-BLOCK.BOTTOM.csv")["total_external_force_y"]

@@ -15,6 +15,9 @@ def joint_deck():
     for old, new in CHANGES.items():
         assert cards.count(f"\n{old}\n") == 1 and f"`{new}`" in document
         cards = cards.replace(f"\n{old}\n", f"\n{new}\n")
+    prints = re.search(r"^    (\*NODE PRINT.*\n)    (.*\n)", document, re.M)
+    assert cards.count("*END STEP\n") == 1
+    cards = cards.replace("*END STEP\n", f"{prints[1]}{prints[2]}*END STEP\n")
     own = "*PARAMETER\nslip = 0.2\n"
     assert cards.startswith(own) and "slip = 0.2" in parameters[2]
     return parameters[1] + parameters[2] + cards.removeprefix(own)

@@ -47,17 +47,25 @@ def test_quantities_are_those_of_the_file(joint):
     assert result.interface("JOINT").points(-1)["pressure"].to_numpy() == pytest.approx(20.0)
 
 
-def test_groups_of_the_history_are_arrays_of_their_own(joint):
-    thercon.run("joint.inp")
-    with h5py.File("joint.vtkhdf", "a") as file:
-        group = file.create_group("history/PRINT/TOP")
-        group.create_dataset("temperature", data=np.arange(8.0).reshape(4, 2)).attrs["unit"] = "C"
-    history = thercon.open("joint").history
-    assert history["PRINT"].TOP.temperature.shape == (4, 2)
-    assert history.PRINT.TOP.units == {"temperature": "C"}
-    table = history.PRINT.TOP.table()
-    assert list(table) == ["temperature 1", "temperature 2"] and list(table.index) == [0.25, 0.5, 0.75, 1]
-    assert "heat_in" in history.table()
+def test_a_set_is_found_by_its_name_and_its_columns_by_the_numbers_of_the_deck(joint):
+    """As many nodes as increments; their temperatures are prescribed, the stress is the pressure."""
+    joint.write_text(joint.read_text().replace("*STEP\n", "*NSET, NSET=TWICE\n1, 3, 6, 8\n"
+                                               "*ELSET, ELSET=TWICE\n2\n*STEP\n", 1).replace(
+        "*END STEP", "*NODE PRINT, NSET=TWICE\nNT\n*EL PRINT, ELSET=BLOCKS\nS\n"
+                     "*EL PRINT, ELSET=TWICE\nS\n*END STEP"))
+    history = thercon.run("joint.inp", pressure=40).history
+    table = history.nodes["TWICE"].table()
+    assert set(table) == {"increment", *(f"temperature_{n}" for n in (1, 3, 6, 8))}
+    assert table["temperature_1"].to_numpy() == pytest.approx([5, 10, 15, 20])
+    assert table["temperature_8"].to_numpy() == pytest.approx([50, 100, 150, 200])
+    points = history["blocks"].table()
+    assert points.loc[1.0, "stress_yy_2.1"] == pytest.approx(-40.0)
+    assert np.array_equal(history["top"].temperature, history.nodes.TOP.temperature)
+    assert "heat_in" in history.table() and "TOP" not in history.table()
+    with pytest.raises(KeyError, match="nearest: 'BLOCKS'; .*heat_in.*, TOP, TWICE, BLOCKS"):
+        history["BLOCK"]
+    with pytest.raises(KeyError, match=r'history.nodes\["TWICE"\] or history.elements\["TWICE"\]'):
+        history["twice"]
 
 
 def test_stress_of_a_node_between_materials_is_that_of_the_one_named(joint):
@@ -94,11 +102,20 @@ def test_a_summary_has_the_columns_of_a_table_of_runs(joint):
 
 def test_a_failed_check_is_no_exception(joint):
     joint.write_text(joint.read_text() + '*VERIFY, KIND=ANALYTIC, SOURCE="resistances"\n'
-                     "heat_rate, JOINT, LAST, 3.6, 1.E-9\nNT, 8, LAST, 199., 1.E-9\n")
+                     "heat_rate, JOINT, LAST, 3.6, 1.E-9\nNT, 8, LAST, 199., 1.E-9\n"
+                     "NT, 8, 0.5, 100., 0.1, ABS\nNT reaches 500., 8, LAST, 1., 0.1\n")
     result = thercon.run("joint.inp")
-    assert result.status == 4 and list(result.checks["passed"]) == [True, False]
+    assert result.status == 4 and list(result.checks["passed"]) == [True, False, True, False]
     assert result.checks["found"][1] == pytest.approx(200.0)
-    assert thercon.open("joint").status == 4
+    opened = thercon.open("joint")
+    assert opened.status == 4
+    for name in ("quantity", "where", "kind", "passed", "expected", "tolerance", "time", "found", "reason"):
+        one, other = opened.checks[name], result.checks[name]
+        assert list(one) == pytest.approx(list(other), rel=1e-7, nan_ok=True) \
+            if one.dtype.kind == "f" else one.fillna("").equals(other.fillna("")), name
+    os.remove("joint.lst")
+    with pytest.raises(thercon.UserError, match="its checks are in its listing, and joint.lst is missing"):
+        opened.checks
 
 
 def test_an_exception_has_the_messages_with_their_places(joint):
@@ -141,10 +158,14 @@ def test_a_row_that_fails_leaves_the_others_alone(joint):
 
 
 def test_a_mistake_in_the_table_is_an_exception(joint):
-    with pytest.raises(thercon.RunError) as raised:
-        thercon.run_many("joint.inp", {"pressure": [20], "presure": [30]}, out="many")
-    (message,) = raised.value.messages
-    assert (message.file, message.line, message.column) == ("many/joint.values.csv", 1, 10)
+    """Which is named by row and column: the user has not seen the file made of it."""
+    for column, value, told in (("presure", 30, "column presure: no *PARAMETER"),
+                                ("factor", "few", "row 2, column factor: factor needs a number")):
+        with pytest.raises(thercon.RunError) as raised:
+            thercon.run_many("joint.inp", {"pressure": [20, 30], column: [1, value]}, out="many")
+        (message,) = raised.value.messages
+        assert (message.file, message.line) == ("table", None) and message.message.startswith(told)
+        assert "values.csv" not in str(raised.value)
 
 
 def test_ctrl_c_ends_a_table_and_the_same_call_goes_on(joint):
@@ -161,7 +182,8 @@ def test_ctrl_c_ends_a_table_and_the_same_call_goes_on(joint):
         time.sleep(0.01)
     process.send_signal(signal.SIGINT)
     _, said = process.communicate()
-    assert "KeyboardInterrupt" in said and not os.path.exists("answer.csv")
+    assert "KeyboardInterrupt" in said and "subprocess.py" not in said
+    assert not os.path.exists("answer.csv")
     first = os.stat("many/joint-1.vtkhdf").st_mtime_ns
     subprocess.run([sys.executable, "-c", code], check=True)
     assert os.stat("many/joint-1.vtkhdf").st_mtime_ns == first

@@ -13,6 +13,7 @@ from .result import text, words_of
 
 KINDS = {"nodes": "node", "elements": "element"}
 OF_ROWS = ("increment", "time")
+OF_MEMBERS = (*KINDS.values(), "point")
 
 
 @dataclass
@@ -57,15 +58,10 @@ def set_histories(result):
 def read_set(group, kind, word, name):
     """Return the history of one set."""
     rows = len(numbers(group, "time", like=(None,), finite=True))
-    labels = [f"{n}" for n in numbers(group, word, like=(None,))]
-    known = {word, *OF_ROWS}
-    if kind == "elements":
-        known.add("point")
-        labels = [f"{label}.{p}" for label, p in zip(
-            labels, numbers(group, "point", like=(len(labels),)))]
+    labels = member_labels(group, word)
     values, units = {}, {}
     for key in group:
-        if key in known:
+        if key in (*OF_ROWS, *OF_MEMBERS):
             continue
         values[key] = numbers(group, key)
         fits = values[key].shape in ((rows,), (rows, len(labels)))
@@ -76,6 +72,15 @@ def read_set(group, kind, word, name):
     increment, time = (numbers(group, key, like=(rows,)) for key in OF_ROWS)
     need(group, np.all(increment > 0), "increment has values that are no counts from 1")
     return SetHistory(kind, name, increment, time, labels, values, units)
+
+
+def member_labels(group, word):
+    """Return the numbers of the members of a set as text: of nodes, of points "element.point"."""
+    labels = [f"{n}" for n in numbers(group, word, like=(None,))]
+    if word == KINDS["elements"]:
+        labels = [f"{label}.{p}" for label, p in zip(
+            labels, numbers(group, "point", like=(len(labels),)))]
+    return labels
 
 
 def chosen(result, name):
