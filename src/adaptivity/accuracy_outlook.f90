@@ -9,13 +9,16 @@ module accuracy_outlook
 
    integer, parameter :: most_before = 2        !! rounds before the last one that count
    real(dp), parameter :: falling = 0.9_dp      !! of the uncertainty of a round before
+   real(dp), parameter :: slowest = 0.25_dp     !! order of which rounds can be foretold
+   integer, parameter :: most_rounds = 8        !! that can be
 
    !> The outlook of one target.
    type :: outlook_type
       logical :: is_known = .false.        !! whether two rounds have its uncertainty
-      logical :: falls = .false.           !! whether that falls; the next three are 0 otherwise
-      integer :: rounds = 0                !! more that would meet it
+      logical :: falls = .false.           !! whether that falls; the next four are 0 otherwise
       real(dp) :: order = 0.0_dp           !! the uncertainty falls as this power of the unknowns
+      logical :: is_foretold = .false.     !! whether fast enough to foretell the next two
+      integer :: rounds = 0                !! more that would meet it
       real(dp) :: cpu_seconds = 0.0_dp     !! of these rounds [s]
    end type outlook_type
 
@@ -44,7 +47,9 @@ contains
          outlook%falls = by_round < falling .and. sizes(2) > sizes(1)
          if (.not. outlook%falls) return
          outlook%order = log(before/after)/log(sizes(2)/sizes(1))
-         outlook%rounds = ceiling(min(log(after)/(-log(by_round)), real(huge(1), dp)/2))
+         if (outlook%order < slowest .or. by_round**most_rounds*after > 1.0_dp) return
+         outlook%is_foretold = .true.
+         outlook%rounds = ceiling(log(after)/(-log(by_round)))
          ! At least as the unknowns, of which a first round has few.
          seconds = rounds(n)%cpu_seconds
          growth = max(sizes(2)/sizes(1), seconds/max(rounds(first)%cpu_seconds, &

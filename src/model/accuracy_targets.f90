@@ -53,15 +53,17 @@ contains
 
    !> Reads a request such as 1%, of the usual quantities, or force=1%,heat=2%, each quantity once;
    !> unallocated where it is none.
-   pure subroutine read_request(words, targets)
+   pure subroutine read_request(words, targets, unknown)
       character(*), intent(in) :: words
       type(accuracy_target_type), allocatable, intent(out) :: targets(:)
+      character(:), allocatable, intent(out) :: unknown   !! the first name of none; else empty
       character(:), allocatable :: part, rest
       real(dp) :: bound
       integer :: comma, equals, i, q
       logical :: valid
 
       allocate (targets(0))
+      unknown = ''
       rest = words//','
       do while (len(rest) > 0)
          comma = index(rest, ',')
@@ -75,6 +77,7 @@ contains
             short_names == part(:max(equals - 1, 0)), .true., dim=1)
          if (equals == 0) valid = valid .and. size(targets) == 0 .and. len(rest) == 0
          if (equals > 0) valid = valid .and. q > 0
+         if (equals > 0 .and. q == 0) unknown = part(:equals - 1)
          do i = 1, size(targets)
             if (q > 0) valid = valid .and. targets(i)%quantity /= quantities(q)
          end do

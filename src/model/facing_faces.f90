@@ -1,14 +1,15 @@
-!> Which faces of some master surfaces lie opposite a slave surface.
+!> Which faces of some master surfaces lie opposite a slave surface, and which faces touch others.
 module facing_faces
    use element_kinds, only: element_corner_count, side_nodes
    use kinds, only: dp
    use mesh, only: mesh_type
    implicit none
    private
-   public :: find_facing
+   public :: find_facing, touches
 
    !> Part of the largest coordinate by which two places in a deck are the same: six digits
    real(dp), parameter :: digits = 1.0e-6_dp
+   real(dp), parameter :: little = 0.05_dp   !! part of a face that neither overlap nor gap show
 
    !> A face as a straight line, with its body on the left.
    type :: line_type
@@ -56,6 +57,28 @@ contains
       chosen = masters(chosen)
       if (all(share <= 0.0_dp)) chosen = 0
    end subroutine find_facing
+
+   !> Whether each face lies on some of the others, or overlaps their bodies, before any load.
+   pure function touches(mesh, faces, others)
+      type(mesh_type), intent(in) :: mesh
+      integer, intent(in) :: faces(:, :), others(:, :)   !! (2, n) as in a surface
+      logical :: touches(size(faces, 2))
+      type(line_type) :: own(size(faces, 2)), opposite(size(others, 2))
+      real(dp) :: gap, overlap
+      integer :: i, k
+
+      own = lines_of(mesh, faces)
+      opposite = lines_of(mesh, others)
+      touches = .false.
+      do i = 1, size(own)
+         do k = 1, size(opposite)
+            call measure(own(i), opposite(k), gap, overlap)
+            touches(i) = overlap > little*own(i)%length .and. gap <= little*own(i)%length .and. &
+               2.0_dp*gap > -own(i)%depth
+            if (touches(i)) exit
+         end do
+      end do
+   end function touches
 
    pure function lines_of(mesh, faces) result(lines)
       type(mesh_type), intent(in) :: mesh

@@ -25,13 +25,14 @@ module model
    integer, parameter, public :: uncertainty_no = 0, uncertainty_last = 1, uncertainty_full = 2
    character(*), parameter, public :: uncertainty_words = 'NO/LAST/FULL/YES'
 
-   !> Labels of the deck's units (*OPTIONS, UNITS=); empty when not given.
+   !> Labels of the deck's units (*OPTIONS, UNITS=); empty when not given, the last three also
+   !> beside the others.
    type :: unit_labels_type
       character(:), allocatable :: length        !! such as cm
       character(:), allocatable :: stress        !! such as MPa
       character(:), allocatable :: power         !! such as W
       character(:), allocatable :: temperature   !! such as C
-      character(:), allocatable :: time          !! such as s; may be empty beside the others
+      character(:), allocatable :: time          !! such as s
    end type unit_labels_type
 
    !> *PHYSICAL CONSTANTS.

@@ -14,7 +14,6 @@ module accuracy_advice
    public :: advice_of, demand_name
 
    integer, parameter :: most_told = 3          !! targets
-   integer, parameter :: most_rounds = 20       !! beyond which a target is out of reach
    character(*), parameter :: limits = ' limits it: '
 
 contains
@@ -72,8 +71,10 @@ contains
             'nodes '//to_text(node_number(finding%nodes(1)))//' and '// &
             to_text(node_number(finding%nodes(2)))//' meet'
          words = words//within_reach(accuracy, d)
-      else if (outlook%rounds > most_rounds) then
-         words = 'more than '//counted(most_rounds, 'round')//' are left'//within_reach(accuracy, d)
+      else if (outlook%falls .and. .not. outlook%is_foretold) then
+         words = 'its uncertainty falls only as unknowns to the power -'// &
+            few_digits(outlook%order)//', too slowly for more rounds to reach it; begin with a '// &
+            'finer mesh (*REFINE with one more of LEVELS=)'//within_reach(accuracy, d)
       else if (outlook%is_known) then
          words = 'its uncertainty falls as unknowns to the power -'//few_digits(outlook%order)// &
             '; about '//counted(outlook%rounds, 'more round')//' ('// &

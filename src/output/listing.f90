@@ -154,7 +154,7 @@ contains
       do i = 1, size(self%diagrams)
          call self%diagrams(i)%add(record, record%contacts(i)%contact_state)
       end do
-      call print_balances(self%page, record, model%steps(record%step)%analysis)
+      call print_balances(self%page, record, model)
       call print_body_errors(self%page, record)
       call print_warnings(self, record)
       if (allocated(record%uncertainties) .and. reason_of_run(model) == no_reason) then

@@ -12,6 +12,7 @@ module listing_increments
    use listing_text, only: column, in_columns, page_type, to_right, zone_counts
    use mesh, only: mesh_type
    use no_estimates, only: no_reason, words_of_reason
+   use model, only: model_type
    use quantity_types, only: needs_coupling, needs_dilatation, needs_friction_heat, &
       needs_heat, needs_mechanics, &
       needs_branch, needs_nothing, needs_storage, &
@@ -21,7 +22,7 @@ module listing_increments
    use reported_quantities, only: quantities
    use steps, only: solves_heat, solves_mechanics
    use summary, only: corner_words, largest_at, place_words, words_of
-   use text, only: append, string_type, to_text, with_decimals
+   use text, only: append, or_blank, string_type, to_text, with_decimals
    implicit none
    private
    public :: print_increment, print_attempts, print_interface, print_interfaces, print_balances
@@ -167,20 +168,23 @@ contains
    end function told
 
    !> Prints what balances, and the work of the re-factorisation.
-   subroutine print_balances(page, record, analysis)
+   subroutine print_balances(page, record, model)
       type(page_type), intent(inout) :: page              !! of the listing
       type(increment_record_type), intent(in) :: record
-      integer, intent(in) :: analysis                     !! one of the analysis_* constants
+      type(model_type), intent(in) :: model
       integer, parameter :: parts(7) = [needs_nothing, needs_heat, needs_storage, &
          needs_dilatation, needs_friction_heat, needs_mechanics, needs_branch]
+      character(:), allocatable :: unit
       logical :: is_told(size(parts)), has_heat
       integer :: i
 
-      has_heat = solves_heat(analysis)
-      is_told = [.true., has_heat, has_heat .and. .not. ieee_is_nan(record%heat_stored), &
-         has_heat .and. .not. ieee_is_nan(record%heat_dilatation), &
-         has_heat .and. .not. ieee_is_nan(record%heat_friction), solves_mechanics(analysis), &
-         allocated(record%load_factor)]
+      associate (analysis => model%steps(record%step)%analysis)
+         has_heat = solves_heat(analysis)
+         is_told = [.true., has_heat, has_heat .and. .not. ieee_is_nan(record%heat_stored), &
+            has_heat .and. .not. ieee_is_nan(record%heat_dilatation), &
+            has_heat .and. .not. ieee_is_nan(record%heat_friction), solves_mechanics(analysis), &
+            allocated(record%load_factor)]
+      end associate
       do i = 1, size(parts)
          if (is_told(i) .and. history_line(parts(i), record) /= '') call page%line( &
             history_line(parts(i), record))
@@ -198,11 +202,12 @@ contains
             call page%line('            RF3, RM1, RM2  '//in_columns(record%along_z(4:, i), 14, 6))
          end do
       end if
-      if (stability_words(record) /= '') call page%wrapped('   ', 'stability: '// &
-         stability_words(record))
+      unit = or_blank(model%units%time)
+      if (stability_words(record, unit) /= '') call page%wrapped('   ', 'stability: '// &
+         stability_words(record, unit))
       if (allocated(record%stability)) then
          if (allocated(record%stability%leading)) call page%wrapped('   ', &
-            leading_words(record%stability%leading))
+            leading_words(record%stability%leading, unit))
       end if
       associate (work => record%work)
          if (work%columns_full > 0) call page%line('   refactored '// &

@@ -13,7 +13,7 @@ module listing_tables
    use requested_tables, only: due_tables, requested_table_type, table_column_type
    use solution_report, only: iteration_record_type
    use text, only: or_blank, string_type, to_text
-   use verification, only: uncertainty_words, outcome_type
+   use verification, only: node_words, outcome_type, uncertainty_words
    implicit none
    private
    public :: print_contact_table, print_iterations, print_requested, print_verdicts, &
@@ -114,8 +114,9 @@ contains
          merge(' REL', ' ABS', check%relative)//merge(' PASS', ' FAIL', outcome%passed))
       if (or_blank(check%source) /= '') call page%line('        source: '//check%source)
       if (outcome%reason /= '') call page%line('        failed: '//outcome%reason)
-      if (uncertainty_words(outcome) /= '') call page%line('        found:  '// &
-         to_text(outcome%found)//uncertainty_words(outcome))
+      if (uncertainty_words(outcome)//node_words(outcome) /= '') call page%line( &
+         '        found:  '//to_text(outcome%found)//uncertainty_words(outcome)// &
+         node_words(outcome))
    end subroutine print_verdict
 
    !> Prints the tables that are due at an increment.

@@ -229,6 +229,7 @@ contains
                call document%put(outcome%time, 'time')
                call document%put(outcome%found, 'found')
                call document%put(outcome%deviation, 'deviation')
+               if (outcome%node > 0) call document%put(outcome%node, 'node')
             end if
             if (outcome%no_estimate /= no_reason) call document%put(words_of_reason( &
                outcome%no_estimate), 'no_estimate')

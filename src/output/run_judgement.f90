@@ -49,6 +49,7 @@ module run_judgement
       real(dp) :: largest(2) = 0.0_dp              !! strain and rotation so far [-], [radian]
       integer :: element(2) = 0                    !! elements that have them
       integer :: increment(2) = 0                  !! increments that have them
+      integer :: step = 0                          !! that the increment after the last one is in
       !> Whether the run failed, so that what never happened might still have done
       logical, public :: ended_early = .false.
       type(warning_summary_type) :: repeated       !! warnings of its increments
@@ -74,6 +75,7 @@ contains
          ! The initial gap is that of no increment: bodies that touch may part at once.
          allocate (self%smallest_gap(size(interfaces)), source=huge(1.0_dp))
       end if
+      self%step = min(record%step + merge(1, 0, record%last_of_step), size(model%steps))
       if (allocated(record%warnings)) call self%repeated%take(record%increment, record%warnings)
       associate (analysis => model%steps(record%step)%analysis, fields => record%fields)
          if (solves_heat(analysis)) self%warms = self%warms .or. any(abs(fields%temperature - &
@@ -141,7 +143,13 @@ contains
             amount(i, self%largest(i))//'; the theory of small strains and displacements is '// &
             'not valid above '//amount(i, limit))
       end do
-      if (self%ended_early) return
+      if (self%ended_early) then
+         if (self%step == 0) return
+         if (model%steps(self%step)%stability_frequency == huge(1)) call append( &
+            lines, 'step '//to_text(self%step)//' ended before its analysis of *STABILITY, '// &
+            'which is made at its end; FREQUENCY=n asks for one at every n-th increment, too')
+         return
+      end if
       if (any(solves_mechanics(model%steps%analysis))) then
          if (.not. self%moves) call append(lines, 'no load acts: all displacements are 0 in '// &
             'all increments')

@@ -96,7 +96,7 @@ contains
       self%time = record%time
       self%load = record%load
       self%contacts = record%contacts
-      self%stability = stability_words(record)
+      self%stability = stability_words(record, or_blank(model%units%time))
       if (allocated(self%leading)) deallocate (self%leading)
       if (allocated(record%stability)) then
          if (allocated(record%stability%leading)) self%leading = record%stability%leading
@@ -228,7 +228,8 @@ contains
          self%solid_time, mark_of(reason_inside_step(model)), '-', ''))
       if (allocated(self%cycle)) call append(lines, self%cycle)
       if (self%stability /= '') call append(lines, self%stability)
-      if (allocated(self%leading)) call append(lines, leading_words(self%leading))
+      if (allocated(self%leading)) call append(lines, leading_words(self%leading, or_blank( &
+         model%units%time)))
    end subroutine add_lines
 
    !> The largest inelastic strains where they are not among the maxima of bodies.

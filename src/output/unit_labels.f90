@@ -9,7 +9,7 @@ module unit_labels
 contains
 
    !> The unit of a quantity, such as `MPa cm^2` for `stress length^2`; empty where the deck has no
-   !> labels, '-' for a pure number.
+   !> labels, '-' for a pure number. Words that it has no label for stay.
    pure function unit_label(unit, labels) result(words)
       character(*), intent(in) :: unit                  !! unit of quantity_type
       type(unit_labels_type), intent(in) :: labels      !! those of the deck
@@ -23,7 +23,7 @@ contains
       words = with('stress', labels%stress, words)
       words = with('power', labels%power, words)
       words = with('temperature', labels%temperature, words)
-      if (or_blank(labels%time) /= '') words = with('time', labels%time, words)
+      words = with('time', labels%time, words)
    end function unit_label
 
    !> The same; where the deck has no labels, what is measured.
@@ -36,13 +36,15 @@ contains
       if (words == '') words = trim(unit)
    end function unit_in_words
 
-   !> A text with another word for one of its words.
+   !> A text with a label for one of its words.
    pure recursive function with(word, label, text) result(changed)
-      character(*), intent(in) :: word, label, text
+      character(*), intent(in) :: word, text
+      character(:), allocatable, intent(in) :: label     ! unallocated or empty for none
       character(:), allocatable :: changed
       integer :: k
 
       changed = text
+      if (or_blank(label) == '') return
       k = index(text, word)
       if (k > 0) changed = text(:k - 1)//label//with(word, label, text(k + len(word):))
    end function with

@@ -2,7 +2,7 @@
 module verification
    use, intrinsic :: ieee_arithmetic, only: ieee_is_nan
    use contact_points, only: contact_points_type
-   use checked_values, only: is_estimable, values_asked_for, worst_of
+   use checked_values, only: is_estimable, values_asked_for, worst_node, worst_of
    use due_output, only: is_followed, is_judged
    use kinds, only: dp
    use model, only: model_type, verify_type
@@ -13,7 +13,7 @@ module verification
    use text, only: few_digits, percent, to_text
    implicit none
    private
-   public :: verifier_type, outcome_type, failure_words, uncertainty_words
+   public :: verifier_type, outcome_type, failure_words, node_words, uncertainty_words
 
    !> Outcome of one check.
    type :: outcome_type
@@ -22,6 +22,7 @@ module verification
       real(dp) :: time = 0.0_dp                 !! total time at which it was judged [time]
       real(dp) :: found = 0.0_dp                !! value found, the worst of a set
       real(dp) :: deviation = 0.0_dp            !! magnitude of its deviation, relative for REL
+      integer :: node = 0                       !! where in a set of nodes; 0 for no set
       real(dp), allocatable :: uncertainty      !! of the value; unallocated for none
       integer :: no_estimate = no_reason        !! why it has none
       character(:), allocatable :: reason       !! why there is no value; else empty
@@ -81,6 +82,7 @@ contains
          self%outcomes(i) = outcome_of(model%verifications(i), values, reason)
          self%outcomes(i)%time = record%time
          if (len(self%outcomes(i)%reason) > 0) cycle
+         self%outcomes(i)%node = worst_node(model%verifications(i), model%mesh, point_node, values)
          if (.not. is_estimable(model%verifications(i))) cycle
          self%outcomes(i)%no_estimate = reason_inside_step(model)
          if (allocated(record%check_uncertainties)) then
@@ -98,7 +100,7 @@ contains
       type(state_table_type), intent(inout) :: table
       character(:), allocatable :: reasons
       real(dp), allocatable :: values(:)
-      real(dp) :: rows(7, size(self%outcomes))
+      real(dp) :: rows(8, size(self%outcomes))
       integer :: first, i
 
       call exchange_levels(self%levels, table)
@@ -107,7 +109,7 @@ contains
          associate (outcome => self%outcomes(i))
             rows(:, i) = [outcome%time, outcome%found, outcome%deviation, merge(1.0_dp, 0.0_dp, &
                [outcome%judged, outcome%passed, allocated(outcome%uncertainty)]), &
-               real(outcome%no_estimate, dp)]
+               real([outcome%no_estimate, outcome%node], dp)]
             if (allocated(outcome%uncertainty)) rows(7, i) = outcome%uncertainty
             if (outcome%judged) reasons = reasons//outcome%reason//new_line('a')
          end associate
@@ -128,6 +130,7 @@ contains
             outcome%passed = rows(5, i) > 0.0_dp
             if (rows(6, i) > 0.0_dp) outcome%uncertainty = rows(7, i)
             if (rows(6, i) <= 0.0_dp) outcome%no_estimate = nint(rows(7, i))
+            outcome%node = nint(rows(8, i))
             outcome%reason = reasons(first:first - 2 + index(reasons(first:), new_line('a')))
             first = first + len(outcome%reason) + 1
          end associate
@@ -146,7 +149,7 @@ contains
       end associate
    end function counts
 
-   !> The message on a check that failed, such as `deck.inp:36: check failed: heat_rate JOINT at
+   !> The message on a check that failed, such as `deck.inp:36: check failed: NT MID, node 11 at
    !> time 1: 3.6, expected 3.7 (off by 2.7027 %, allowed 1 %)`.
    pure function failure_words(check, outcome) result(words)
       type(verify_type), intent(in) :: check
@@ -154,7 +157,7 @@ contains
       character(:), allocatable :: words
 
       words = check%address//': check failed: '//trim(check%title()//' '//check%where)// &
-         ' at time '//to_text(outcome%time)//': '
+         node_words(outcome)//' at time '//to_text(outcome%time)//': '
       if (len(outcome%reason) > 0) then
          words = words//'expected '//to_text(check%value)//', but '//outcome%reason
       else if (check%relative .and. abs(check%value) > 0.0_dp) then
@@ -167,6 +170,15 @@ contains
             to_text(merge(0.0_dp, check%tolerance, check%relative))//')'
       end if
    end function failure_words
+
+   !> Where the value of a set was found; empty for no set.
+   pure function node_words(outcome) result(words)
+      type(outcome_type), intent(in) :: outcome
+      character(:), allocatable :: words            !! such as ', node 11'
+
+      words = ''
+      if (outcome%node > 0) words = ', node '//to_text(outcome%node)
+   end function node_words
 
    !> How far the value may be from the exact one, or why that is not known.
    pure function uncertainty_words(outcome) result(words)

@@ -17,7 +17,7 @@ module checked_values
    use text, only: read_integer, read_real, to_upper
    implicit none
    private
-   public :: is_estimable, is_on_interface, is_recovered, values_asked_for, worst_of
+   public :: is_estimable, is_on_interface, is_recovered, values_asked_for, worst_node, worst_of
 
    !> Quantities of nodes that are there without a recovery of stress and heat flux.
    character(*), parameter :: own_of_nodes(7) = [character(5) :: 'U1', 'U2', 'NT', 'SOLID', &
@@ -54,6 +54,23 @@ contains
       worst = ieee_value(worst, ieee_quiet_nan)
       if (.not. any(ieee_is_nan(values))) worst = values(maxloc(abs(values - check%value), dim=1))
    end function worst_of
+
+   !> Number in the deck of the node whose value is worst_of; 0 where the check is not about a set of
+   !> nodes.
+   pure integer function worst_node(check, mesh, point_node, values)
+      type(verify_type), intent(in) :: check
+      type(mesh_type), intent(in) :: mesh
+      integer, intent(in) :: point_node(:)                 !! (points) node index of each point
+      real(dp), intent(in) :: values(:)                    !! at least one, those asked for
+      type(quantity_type) :: quantity
+      integer, allocatable :: nodes(:)
+
+      worst_node = 0
+      quantity = verifiable(find_quantity(verifiable, check%quantity))
+      if (quantity%kind /= of_nodes .or. size(values) < 2) return
+      nodes = pack(point_node, is_wanted(check%where, mesh, point_node))
+      worst_node = mesh%node_number(nodes(maxloc(abs(values - check%value), dim=1)))
+   end function worst_node
 
    !> The values that a check is about: one, or those of a set, of which the worst counts.
    !> [those of the quantity]
@@ -189,22 +206,32 @@ contains
       integer, intent(in) :: point_node(:)
       real(dp), allocatable, intent(inout) :: values(:)
       character(:), allocatable, intent(inout) :: reason
-      logical, allocatable :: wanted(:)
+
+      values = pack(values, is_wanted(where, mesh, point_node))
+      if (size(values) == 0) reason = 'there is no node or node set "'//where//'"'
+   end subroutine select_points
+
+   !> Which points are the node or the nodes of the set that a check names.
+   pure function is_wanted(where, mesh, point_node) result(wanted)
+      character(*), intent(in) :: where
+      type(mesh_type), intent(in) :: mesh
+      integer, intent(in) :: point_node(:)
+      logical :: wanted(size(point_node))
+      logical :: of_node(size(mesh%node_number))
       integer :: number, i
       logical :: is_number
 
-      allocate(wanted(size(mesh%node_number)), source=.false.)
+      of_node = .false.
       call read_integer(where, number, is_number)
       if (is_number) then
-         wanted = mesh%node_number == number
+         of_node = mesh%node_number == number
       else
          do i = 1, size(mesh%node_sets)
             if (to_upper(mesh%node_sets(i)%name) /= to_upper(where)) cycle
-            wanted(mesh%node_sets(i)%members) = .true.
+            of_node(mesh%node_sets(i)%members) = .true.
          end do
       end if
-      values = pack(values, wanted(point_node))
-      if (size(values) == 0) reason = 'there is no node or node set "'//where//'"'
-   end subroutine select_points
+      wanted = of_node(point_node)
+   end function is_wanted
 
 end module checked_values

@@ -218,16 +218,17 @@ contains
    end function stability_value
 
    !> Whether a state lasts, in words; empty where nothing is known of it.
-   pure function stability_words(record) result(words)
+   pure function stability_words(record, unit) result(words)
       type(increment_record_type), intent(in) :: record
-      character(:), allocatable :: words   !! such as 'stable; slowest mode decays in 41'
+      character(*), intent(in) :: unit     !! of time; may be empty
+      character(:), allocatable :: words   !! such as 'stable; slowest mode decays in 41 s'
 
       words = ''
       if (record%is_unstable) words = 'unstable whatever the heat capacities are: det(I - U'') '// &
          'is negative'
       if (.not. allocated(record%stability)) return
       associate (found => record%stability)
-         if (found%is_known) words = motion_words(found)
+         if (found%is_known) words = motion_words(found, unit)
          if (.not. allocated(found%doubt)) return
          if (record%is_unstable .and. .not. found%is_known) return
          if (words == '') then
@@ -239,8 +240,9 @@ contains
    end function stability_words
 
    !> Small motions in words.
-   pure function motion_words(found) result(words)
+   pure function motion_words(found, unit) result(words)
       type(stability_record_type), intent(in) :: found
+      character(*), intent(in) :: unit
       character(:), allocatable :: words
 
       if (found%unstable_modes > 0) then
@@ -248,19 +250,22 @@ contains
             ' grow ', found%unstable_modes == 1))
          ! Of motions that are in doubt the fastest one that is found may decay.
          if (found%growth_rate > 0.0_dp) words = words//', doubling in '// &
-            few_digits(log(2.0_dp)/found%growth_rate, 3)
+            trim(few_digits(log(2.0_dp)/found%growth_rate, 3)//' '//unit)
       else if (found%growth_rate < 0.0_dp) then
-         words = 'stable; slowest mode decays in '//few_digits(-1.0_dp/found%growth_rate, 3)
+         words = trim('stable; slowest mode decays in '//few_digits(-1.0_dp/found%growth_rate, &
+            3)//' '//unit)
       else
          words = 'neutral: a mode neither grows nor decays'
       end if
-      if (found%period > 0.0_dp) words = words//', period '//few_digits(found%period, 3)
+      if (found%period > 0.0_dp) words = trim(words//', period '// &
+         few_digits(found%period, 3)//' '//unit)
    end function motion_words
 
    !> Growth rates and periods of leading motions in words; empty where none is known.
-   pure function leading_words(leading) result(words)
+   pure function leading_words(leading, unit) result(words)
       !> (2, motions) as stability_record_type has them; unallocated for none
       real(dp), allocatable, intent(in) :: leading(:, :)
+      character(*), intent(in) :: unit     !! of time; may be empty
       character(:), allocatable :: words
       integer :: i
 
@@ -268,8 +273,10 @@ contains
       if (.not. allocated(leading)) return
       do i = 1, size(leading, 2)
          words = words//trim(merge(', ', ': ', i > 1))//' '//few_digits(leading(1, i), 4)
-         if (leading(2, i) > 0.0_dp) words = words//' (period '//few_digits(leading(2, i), 4)//')'
+         if (leading(2, i) > 0.0_dp) words = words//' (period '// &
+            trim(few_digits(leading(2, i), 4)//' '//unit)//')'
       end do
+      if (unit /= '') words = ' in 1/'//unit//words
       words = trim(merge('growth rates of the leading modes', &
          'growth rate of the leading mode  ', size(leading, 2) > 1))//words
    end function leading_words

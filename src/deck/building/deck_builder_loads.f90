@@ -313,7 +313,7 @@ contains
          valid = abs(request%value) <= 0.0_dp
          if (.not. valid) then
             call deck%error(data%place(4), 'degree of freedom '//to_text(dof)//' can only be 0 '// &
-               'in the plane')
+               'in the plane; temperature is 11')
             return
          end if
          call deck%note(ignored)

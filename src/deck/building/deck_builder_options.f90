@@ -109,7 +109,7 @@ contains
       deck%load_place = card%place_of('LOAD')
    end subroutine build_option_card
 
-   !> UNITS="length stress power temperature time", the last of which may be left out.
+   !> UNITS="length stress power temperature time", the last three of which may be left out.
    subroutine build_units(card, deck)
       type(keyword_card_type), intent(in) :: card
       type(deck_type), intent(inout) :: deck
@@ -124,8 +124,8 @@ contains
          words(i) = rest(:blank - 1)
          rest = trim(adjustl(rest(blank:)))
       end do
-      if (len(rest) > 0 .or. words(4) == '') then
-         call deck%error(card%place_of('UNITS'), 'UNITS= has four or five words: length, '// &
+      if (len(rest) > 0 .or. words(2) == '') then
+         call deck%error(card%place_of('UNITS'), 'UNITS= has two to five words: length, '// &
             'stress, power, temperature, time')
          return
       end if

@@ -1,16 +1,20 @@
-!> Slips that steps with heat show: contact without a law for its conductance, coefficients of
-!> expansion in another unit than the temperatures.
+!> Slips that steps with heat show: contact without a law for its conductance, films on faces in
+!> contact, coefficients of expansion in another unit than the temperatures.
 module heat_checks
    use conductance_laws, only: law_none
+   use contact_definitions, only: contact_definition_type, is_removed
    use deck_context, only: deck_type
    use equations, only: facing_nodes
    use deck_source, only: place_type
+   use facing_faces, only: touches
    use kinds, only: dp
    use load_requests, only: request_type
    use materials, only: follows_temperature, in_plane, of_expansion
+   use mesh, only: mesh_type
    use model, only: model_type
-   use steps, only: dof_temperature, load_film_sink, load_temperature, solves_heat, solves_mechanics
-   use text, only: counted, to_text
+   use steps, only: dof_temperature, load_film_coefficient, load_film_sink, load_temperature, &
+      solves_heat, solves_mechanics
+   use text, only: counted, others, to_text
    implicit none
    private
    public :: check_heat_paths, check_starts, temperature_range
@@ -20,8 +24,8 @@ module heat_checks
 
 contains
 
-   !> Warns of contact pairs that no heat crosses, and of materials whose expansion over the range
-   !> of the temperatures of the deck is no small strain.
+   !> Warns of contact pairs that no heat crosses, of films on their faces, and of materials
+   !> whose expansion over the range of the temperatures of the deck is no small strain.
    subroutine check_heat_paths(deck)
       type(deck_type), intent(inout) :: deck
       integer :: i
@@ -31,6 +35,7 @@ contains
       do i = 1, size(deck%model%contacts)
          associate (contact => deck%model%contacts(i), interaction => &
             deck%model%interactions(deck%model%contacts(i)%interaction))
+            call check_films(contact, i, deck)
             if (interaction%law%open_kind /= law_none) cycle
             if (interaction%law%closed_kind /= law_none) cycle
             call deck%warning(place_type(image=contact%card), 'no heat crosses '//contact%name// &
@@ -39,6 +44,59 @@ contains
          end associate
       end do
    end subroutine check_heat_paths
+
+   !> Warns of films on faces that touch the other surface of a contact pair; heat fluxes there may
+   !> stand for friction. The mesh is not refined yet.
+   subroutine check_films(contact, index, deck)
+      type(contact_definition_type), intent(in) :: contact
+      integer, intent(in) :: index                        ! of it
+      type(deck_type), intent(inout) :: deck
+      logical, allocatable :: of_master(:), of_slave(:)
+      integer :: i, n
+
+      associate (mesh => deck%mesh, loads => deck%loads, slave => deck%mesh%surfaces( &
+         contact%slave)%faces, master => deck%mesh%surfaces(contact%master)%faces)
+         of_slave = spread(.false., 1, size(slave, 2))
+         of_master = spread(.false., 1, size(master, 2))
+         do i = 1, loads%count
+            associate (load => loads%items(i))
+               if (load%kind == load_film_coefficient .and. .not. is_removed( &
+                  deck%model%steps(:load%step)%changes, index)) then
+                  of_slave = of_slave .or. is_loaded(load, slave, mesh)
+                  of_master = of_master .or. is_loaded(load, master, mesh)
+               end if
+               ! A data card may make several requests.
+               if (i < loads%count) then
+                  if (loads%items(i + 1)%card == load%card) cycle
+               end if
+               if (.not. (any(of_slave) .or. any(of_master))) cycle
+               n = count(of_slave .and. touches(mesh, slave, master)) + &
+                  count(of_master .and. touches(mesh, master, slave))
+               if (n > 0) call deck%warning(load%place, 'the film acts on faces of '// &
+                  contact%title()//' that touch the other surface; leave these faces out'// &
+                  others(n, '; their number: '))
+               of_slave = .false.
+               of_master = .false.
+            end associate
+         end do
+      end associate
+   end subroutine check_films
+
+   !> Which faces a load acts on.
+   pure function is_loaded(load, faces, mesh)
+      type(request_type), intent(in) :: load
+      integer, intent(in) :: faces(:, :)                  ! (2, n) as in a surface
+      type(mesh_type), intent(in) :: mesh
+      logical :: is_loaded(size(faces, 2))
+      integer, allocatable :: elements(:)
+      integer :: k
+
+      elements = load%members(mesh%element_sets)
+      do k = 1, size(faces, 2)
+         is_loaded(k) = faces(2, k) == load%component
+         if (is_loaded(k)) is_loaded(k) = any(elements == faces(1, k))
+      end do
+   end function is_loaded
 
    !> Warns of nodes of bodies without an initial temperature where others have one that is not 0.
    !> The mesh is not refined yet.

@@ -15,7 +15,7 @@ module deck_context
    use number_lists, only: number_list_type
    use quantity_types, only: quantity_type
    use sorting, only: number_index_type
-   use spelling, only: nearest_known
+   use spelling, only: known_choices, nearest_known
    use text, only: read_integer, string_type, to_upper
    use time_points, only: time_points_type
    implicit none
@@ -286,7 +286,14 @@ contains
             '*ELSET, *SURFACE, *CONTACT PAIR and what changes it: make a set or surface of all'
       else
          known = self%names(findloc(nouns == noun, .true., dim=1))%known()
-         message = 'unknown '//noun//' '//name//nearest_known(name, known(:min(size(known), most)))
+         known = known(:min(size(known), most))
+         message = 'unknown '//noun//' '//name
+         ! Sets and surfaces may be many, and the mesh's.
+         if (any(nouns(:3) == noun)) then
+            message = message//nearest_known(name, known)
+         else
+            message = message//known_choices(name, known)
+         end if
       end if
       call self%missing(place, message, noun, name)
    end subroutine report_unknown
