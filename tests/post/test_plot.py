@@ -701,6 +701,57 @@ def test_a_range_of_the_profiles_does_not_call_closed_points_open(kept, result):
     assert "The face runs from 0 to 20 cm; the part not shown\ncarries up to " in label
 
 
+@pytest.mark.parametrize("picture", ["profiles", "zones"])
+def test_an_edge_of_contact_far_from_the_last_closed_point_is_shown(kept, result, picture):
+    """As on a coarse mesh, where the edge lies beyond the room round the points that are closed."""
+    with h5py.File(result, "r+") as file:
+        contact = file["contact/CYLINDER"]
+        is_closed = contact["x"][()] < 1.0
+        contact["pressure"][...], contact["status"][...] = 1.0 * is_closed, 1 * is_closed
+        contact["heat_flux"][...] = 0.0
+        for key in ("edge_stick", "edges_stick"):
+            contact[key][...] = np.nan
+        contact["edge_contact"][...] = contact["edges_contact"][:, 0] = contact["s"][12]
+        edge = contact["x"][12]
+    (figure,) = kept(picture, result)
+    limits = figure.axes[-1].get_xlim() if picture == "profiles" else figure.axes[0].get_ylim()
+    assert edge < limits[1] < 20.0
+    assert figure.axes[-1].get_xlabel().endswith("the part not shown is open")
+
+
+def test_a_range_inside_the_contact_is_not_called_open_and_names_no_edge(kept, result):
+    """The points outside are open, but the edge of contact lies beyond the range."""
+    with h5py.File(result, "r+") as file:
+        contact = file["contact/CYLINDER"]
+        is_closed = contact["x"][()] < 1.0
+        contact["pressure"][...], contact["status"][...] = 1.0 * is_closed, 1 * is_closed
+        contact["heat_flux"][...] = 0.0
+    (figure,) = kept("profiles", result, "--range", 0, 3)
+    assert figure.axes[-1].get_xlabel().endswith("the part not shown\nhas edges of contact")
+    names = [text.get_text() for text in figure.legends[0].get_texts()]
+    assert "edge of contact" not in names
+
+
+def test_no_zone_is_named_beyond_its_edge(laid_out, result):
+    """Half of the way from a lone point in slip to the next ones is nearest to it, but open. At the
+    first increment all points stick."""
+    with h5py.File(result, "r+") as file:
+        contact = file["contact/CYLINDER"]
+        s, x = contact["s"][()], contact["x"][()]
+        contact["status"][...] = 1 * (np.arange(len(s)) == 18)
+        contact["status"][0] = 2
+        for key in ("edge_stick", "edges_stick", "edges_contact"):
+            contact[key][...] = np.nan
+        contact["edge_contact"][...] = s[18] + 0.1
+        contact["edges_contact"][1:, :2] = s[18] - 0.1, s[18] + 0.1
+    (figure,) = laid_out("zones", result)
+    (axes,) = figure.axes
+    named = [text for text in axes.texts if text.get_text() == "II\nslip"]
+    low, high = axes.get_ylim()
+    for text in named:  # where there is room to point at it
+        assert abs(low + text.xy[1] * (high - low) - x[18]) < 0.15
+
+
 def test_zones_of_a_load_that_turns_are_drawn_over_time(result):
     with h5py.File(result, "r+") as file:
         file["history/load"][10:] = [540.0, 480.0, 420.0, 360.0, 300.0]

@@ -170,8 +170,11 @@ class Picture:
         return two_signed(self.contact["shear"][self.rows])
 
     def marked_edges(self, key, row):
-        """Return the edges of a kind that are marked: of many interfaces they would hide the rest."""
-        return [] if self.contact.parts else self.edges(key, row)
+        """Return the edges of a kind that are marked, those in the window: of many interfaces they
+        would hide the rest."""
+        edges = self.edges(key, row)
+        is_inside = (edges >= self.window[0]) & (edges <= self.window[1])
+        return [] if self.contact.parts else edges[is_inside]
 
     def with_edges(self, row, piece, values):
         """Return places and values of a piece with zeros at the edges of contact inside it; at a

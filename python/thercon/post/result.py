@@ -186,10 +186,15 @@ class Contact:
         moved = np.interp(edge, self.data["s"], coordinate)
         return np.where(np.isnan(edge), np.nan, moved)
 
+    def contact_edges(self, coordinate, rows=slice(None)):
+        """Return the edges of contact at these increments on the coordinate of the pairs."""
+        edges = np.ravel(self.data["edges_contact"][rows])
+        return self.edge_on_axis(edges[~np.isnan(edges)], coordinate)
+
     def window(self, coordinate, rows=slice(None), of_loads=False):
-        """Return the range that pictures show, and somewhat more: the pairs that close at these
-        increments or, if asked, those that carry all but LEFT_OUT of force and heat; the whole face
-        where there are none."""
+        """Return the range that pictures show, and somewhat more: the edges of contact and the pairs
+        that close at these increments or, if asked, those that carry all but LEFT_OUT of force and
+        heat; the whole face where there are none."""
         low, high = map(float, coordinate[[0, -1]])
         shown = (self.data["status"][rows] != OPEN).any(axis=0)
         if of_loads:
@@ -199,7 +204,8 @@ class Contact:
                 shown |= (np.minimum(before, behind) > 0.5 * LEFT_OUT).any(axis=0)
         if not shown.any():
             return low, high
-        first, last = map(float, coordinate[shown][[0, -1]])
+        places = np.concatenate((coordinate[shown], self.contact_edges(coordinate, rows)))
+        first, last = float(places.min()), float(places.max())
         room = 0.3 * max(last - first, 2.0 * np.min(np.diff(coordinate), initial=high - low))
         return max(low, first - room), min(high, last + room)
 
@@ -227,14 +233,17 @@ class Contact:
         shares = [share_words(shares[:, outside].sum(axis=1).max()) for shares in
                   (self.force_shares(rows), self.heat_shares(rows))]
         carried = [f"{words} of the {of}" for words, of in zip(shares, ("force", "heat")) if words]
-        is_open = np.all(self.data["status"][rows][:, outside] == OPEN)
+        edges = self.contact_edges(coordinate, rows)
+        is_cut = np.any((edges < window[0]) | (edges > window[1]))  # it may be between two points
+        is_open = not is_cut and np.all(self.data["status"][rows][:, outside] == OPEN)
         ends = " to ".join(place_words(end, coordinate) for end in coordinate[[0, -1]])
         face = f"{ends} {unit}".rstrip().replace("-", "\N{MINUS SIGN}")
         words = f"The face runs from {face}; the part not shown"
         if is_open:
             crosses = f",\nand {carried[0]} crosses it" if carried else ""
             return f"{words} is open{crosses}"
-        return f"{words}\ncarries {' and '.join(carried) or 'nothing'}"
+        nothing = "has edges of contact" if is_cut else "carries nothing"
+        return f"{words}\n{'carries ' + ' and '.join(carried) if carried else nothing}"
 
 
 def shares_of(loads):

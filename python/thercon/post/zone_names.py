@@ -3,10 +3,13 @@
 import numpy as np
 from matplotlib.patheffects import withStroke
 
+from .result import OPEN
+
 CURVES = ("edge_contact", "edge_stick")
 NO_STATE = -1  # outside the loads and pairs of the result
 LABEL_GRID = (60, 48)  # where region names may stand: loads x places
-LABEL_ROOM = 0.08  # room that a name needs around its middle, in parts of the axes
+LABEL_ROOM = 0.06  # room that a name needs around its middle, in parts of the axes
+OUTSIDE_ROOM = 0.08  # the same outside its region, where a line leads there
 MARK = 1.8  # half the size of a mark, in points
 LOOKS = {"ha": "center", "va": "center", "linespacing": 0.95, "fontsize": 9}
 
@@ -77,7 +80,7 @@ def shares(axes, values, axis):
 def states_at(picture, axes, u, v):
     """Return the states (loads, places) of the nearest increments and pairs, at shares of the axes.
 
-    They are NO_STATE on the curves of edges, before the first increment and pair, behind the last,
+    They are NO_STATE on the curves of edges and where one is nearer than the pair, before the first increment and pair, behind the last,
     and between pieces of the faces.
     """
     loads, places = shares(axes, picture.abscissa, 0), shares(axes, picture.coordinate, 1)
@@ -90,9 +93,11 @@ def states_at(picture, axes, u, v):
         return states
     states[is_outside(u, loads)] = NO_STATE
     for rows, edge in (curve for key in CURVES for curve in picture.curves[key]):
-        order = np.argsort(loads[rows])
-        at, edge = loads[rows][order], shares(axes, edge, 1)[order]
-        edge = np.interp(u, at, edge, left=np.nan, right=np.nan)
+        order, own = np.argsort(loads[rows]), np.full((len(loads), 1), np.nan)
+        own[rows, 0] = edge = shares(axes, edge, 1)
+        beside = (own[row] - v) * (own[row] - places[pair])  # an open point on an edge is outside
+        states[(beside < 0.0) | ((beside == 0.0) & (states != OPEN))] = NO_STATE
+        edge = np.interp(u, loads[rows][order], edge[order], left=np.nan, right=np.nan)
         states[np.abs(v - edge[:, None]) < 1.0 / len(v)] = NO_STATE
     return states
 
@@ -119,5 +124,5 @@ def free_place(points, room, target, taken, covered):
     clear = np.linalg.norm(points - target, axis=1)
     for other in taken:
         room = np.minimum(room, 0.5 * np.linalg.norm(points - other, axis=1))
-    clear = np.where(room >= min(LABEL_ROOM, room.max()), clear, np.inf)
+    clear = np.where(room >= min(OUTSIDE_ROOM, room.max()), clear, np.inf)
     return int(np.lexsort((clear, np.where(clear <= 2.0 * clear.min(), covered, np.inf)))[0])
