@@ -5,6 +5,7 @@ import csv
 import gzip
 import json
 import re
+import shutil
 import sys
 from pathlib import Path
 
@@ -21,8 +22,10 @@ from test_prints import BODY, HELD, static  # noqa: E402
 from test_reached import WARM, judged  # noqa: E402
 from test_set_histories import solve  # noqa: E402
 
+from thercon.post import history  # noqa: E402
 from thercon.post.cli import main as plot  # noqa: E402
 from thercon.post.report.cli import main as report  # noqa: E402
+from thercon.post.result import Result  # noqa: E402
 
 CARDS = ["*NODE PRINT, NSET=BLOCK.TOP, FREQUENCY=2", "U", "*NODE PRINT, NSET=BLOCK.BOTTOM, TOTALS=ONLY",
          "RF", "*EL PRINT, ELSET=BLOCK", "S"]
@@ -135,6 +138,25 @@ def test_the_browser_draws_the_curves(result, tmp_path):
             assert {curve["name"] for curve in each["curves"]} - {""} <= set(names)
             assert caption.startswith(each["label"])
         assert not browser.messages()
+
+
+def test_times_and_temperatures_have_their_units(usual, tmp_path):
+    path = Path(shutil.copy(usual, tmp_path))
+    with h5py.File(path, "r+") as file:
+        file["run"].attrs["unit_time"] = "s"
+        times = file["history/time"][()]
+        file["history/heat_stored"] = 0.0 * times
+        file["history/nodes/TOP/node"], file["history/nodes/TOP/time"] = [7], times
+        file["history/nodes/TOP/increment"] = np.arange(1, len(times) + 1)
+        file["history/nodes/TOP/temperature"] = times[:, None]
+        file["history/nodes/TOP/temperature"].attrs["unit"] = "C"
+    with Result(path) as opened:
+        (top,) = history.chosen(opened, "TOP")
+        (axes,) = history.picture(opened, top, ["temperature"]).axes
+    assert (axes.get_xlabel(), axes.get_ylabel()) == ("Time (s)", "Temperature (\N{DEGREE SIGN}C)")
+    assert report([str(path), "--out", str(tmp_path)]) == 0
+    (chart,) = [each for each in page_data(tmp_path / "case.html")["history"] if "curves" in each]
+    assert chart["unit"] == "\N{DEGREE SIGN}C"
 
 
 def test_the_page_has_the_checks_of_reached_values(tmp_path):

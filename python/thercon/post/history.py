@@ -47,7 +47,7 @@ def abscissa(result, history):
     load = result.history["load"][history.increment - 1]
     rises = np.all(np.diff(load) > 0.0) or np.all(np.diff(load) < 0.0)
     if "heat_stored" in result.history or not rises:
-        return "Time", history.time
+        return result.units.label("Time", "time"), history.time
     return result.units.load_label(result.load_label), load
 
 

@@ -5,6 +5,7 @@ import re
 import numpy as np
 
 from ..result import ANALYSIS, text, words_of
+from ..units import unit_of
 from .data import contacts_of, plain
 from .html import html, joined
 
@@ -98,7 +99,7 @@ def uncertainties(result):
     others[f"Heat of the model {said}"] = result.uncertainties("increment")
     for caption, known in others.items():
         rows = [[LARGEST.get(key, words_of(key)), number(each[-1, 0]),
-                 *uncertainty_cells(each, why, unit)]
+                 *uncertainty_cells(each, why, unit_of(unit))]
                 for key, (unit, _, each, why) in known.items() if np.nan_to_num(each[-1, 0])]
         if rows:
             found.append(uncertainty_table(caption, known, rows))
