@@ -63,8 +63,9 @@ def test_every_set_has_a_picture_and_a_table(result, tmp_path, capsys):
     np.testing.assert_allclose(total, 1.25 * 6.0 * np.arange(1, 6) / 5)
 
 
-def test_a_set_and_a_quantity_are_chosen(result, tmp_path, capsys):
-    arguments = ["--set", "block.top", "--quantity", "displacement_y", "--csv", "--out", str(tmp_path)]
+@pytest.mark.parametrize("name", ["displacement_y", "U2"])
+def test_a_set_and_a_quantity_are_chosen(result, tmp_path, capsys, name):
+    arguments = ["--set", "block.top", "--quantity", name, "--csv", "--out", str(tmp_path)]
     assert plot(["history", str(result), *arguments]) == 0
     with h5py.File(result) as file:
         nodes = file["history/nodes/BLOCK.TOP/node"][()]

@@ -512,6 +512,27 @@ DECK
     assert found.outcome == "solved, 3 increments"
     assert found.ended_early == "memory ran out. The results are those of round 1."
     assert found.warnings[1:] == ["the second"]
+    listing.write_text(listing.read_text().replace("memory ran out", "it does not hold; after\n   2 cut-backs")
+                       .replace("round 1.\n", "round 1.\n   attempt 1 of size 2, to time 2, not kept: it\n"
+                                "   does not hold\n   attempt 2 of size 1, to time 1, not kept: no\n", 1))
+    assert read_listing(listing, cards).ended_early == (
+        "it does not hold; after 2 cut-backs. The results are those of round 1. Attempt 1 of size 2, to time "
+        "2, not kept: it does not hold. Attempt 2 of size 1, to time 1, not kept: no")
+
+
+def test_a_gap_that_is_zero_in_all_that_is_shown_has_no_chart(synthetic, browser):
+    """It has where it differs from zero there at another load."""
+    def close(file):
+        contact = file["contact/CYLINDER"]
+        contact["heat_flux"][...] = np.where(contact["status"][()] > 0, contact["heat_flux"][()], 0.0)
+        contact["gap"][...] = np.where(contact["x"][()] < 12.0, 0.0, contact["gap"][()])
+
+    def close_last(file):
+        file["contact/CYLINDER/gap"][-1] = 0.0
+
+    for change, most in ((close, 0), (close_last, 1)):
+        browser.open(synthetic(change))
+        assert browser.run("return document.querySelectorAll('#gap svg').length") == most
 
 
 def test_the_rounds_of_a_requested_accuracy_are_told(synthetic):

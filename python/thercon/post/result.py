@@ -59,6 +59,8 @@ UNJUDGED = "inside a step: the mesh is not refined for this time"
 MARKED = "dotted lines are ends of steps; the mesh is refined for these alone"
 ROUND = ("cpu_seconds", "unknowns", "elements", "increments")
 ANALYSIS = ("time", "unstable_modes", "growth_rate", "period")
+NO_ANALYSIS = ("no state was analysed: the run did not come to the end of a step with *STABILITY, nor to "
+               "an increment of its FREQUENCY=")
 ITERATION = ("increment", "iteration", "residual", "g_min", "g_max")
 COMPONENTS = {"displacement": 3, "mode_displacement": 3, "stress": 4, "principal_stress": 3,
               "heat_flux": 3}

@@ -4,7 +4,7 @@ import re
 
 import numpy as np
 
-from ..result import ANALYSIS, text, words_of
+from ..result import ANALYSIS, NO_ANALYSIS, text, words_of
 from ..units import unit_of
 from .data import contacts_of, plain
 from .html import html, joined
@@ -133,6 +133,8 @@ def stability(result, listing):
     found = result.stability
     if found is None:
         return ""
+    if not len(found["time"]):
+        return html("<p>Stability in time: {}.</p>", NO_ANALYSIS)
     rows = []
     for time, modes, rate, period in zip(*(found[key] for key in ANALYSIS)):
         row = int(np.argmin(np.abs(result.history["time"] - time)))
