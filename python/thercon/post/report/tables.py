@@ -24,8 +24,9 @@ def table(caption, head, rows, numbers=()):
     top = joined(html('<th scope="col"{}>{}</th>', *each) for each in zip(looks, head))
     lines = []
     for row in rows:
-        cells = [html('<th scope="row">{}</th>', row[0])]
-        cells += [html("<td{}>{}</td>", looks[k], cell) for k, cell in enumerate(row[1:], 1)]
+        cells = [html('<th scope="row" data-head="{}">{}</th>', head[0], row[0])]
+        cells += [html('<td{} data-head="{}">{}</td>', looks[k], head[k], cell)
+                  for k, cell in enumerate(row[1:], 1)]
         lines.append(html("<tr>{}</tr>", joined(cells)))
     return html(
         '<div class="wide"><table><caption>{}</caption><thead><tr>{}</tr></thead>'
