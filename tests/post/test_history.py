@@ -5,6 +5,7 @@ import csv
 import gzip
 import json
 import re
+import shutil
 import sys
 from pathlib import Path
 
@@ -22,8 +23,10 @@ from test_reached import WARM, judged  # noqa: E402
 from test_set_histories import solve  # noqa: E402
 
 import thercon  # noqa: E402
+from thercon.post import history  # noqa: E402
 from thercon.post.cli import main as plot  # noqa: E402
 from thercon.post.report.cli import main as report  # noqa: E402
+from thercon.post.result import Result  # noqa: E402
 
 CARDS = ["*NODE PRINT, NSET=BLOCK.TOP, FREQUENCY=2", "U", "*NODE PRINT, NSET=BLOCK.BOTTOM, TOTALS=ONLY",
          "RF", "*EL PRINT, ELSET=BLOCK", "S"]
@@ -62,8 +65,9 @@ def test_every_set_has_a_picture_and_a_table(result, tmp_path, capsys):
     np.testing.assert_allclose(total, 1.25 * 6.0 * np.arange(1, 6) / 5)
 
 
-def test_a_set_and_a_quantity_are_chosen(result, tmp_path, capsys):
-    arguments = ["--set", "block.top", "--quantity", "displacement_y", "--csv", "--out", str(tmp_path)]
+@pytest.mark.parametrize("name", ["displacement_y", "U2"])
+def test_a_set_and_a_quantity_are_chosen(result, tmp_path, capsys, name):
+    arguments = ["--set", "block.top", "--quantity", name, "--csv", "--out", str(tmp_path)]
     assert plot(["history", str(result), *arguments]) == 0
     with h5py.File(result) as file:
         nodes = file["history/nodes/BLOCK.TOP/node"][()]
@@ -139,12 +143,31 @@ def test_the_browser_draws_the_curves(result, tmp_path):
         assert not browser.messages()
 
 
+def test_times_and_temperatures_have_their_units(usual, tmp_path):
+    path = Path(shutil.copy(usual, tmp_path))
+    with h5py.File(path, "r+") as file:
+        file["run"].attrs["unit_time"] = "s"
+        times = file["history/time"][()]
+        file["history/heat_stored"] = 0.0 * times
+        file["history/nodes/TOP/node"], file["history/nodes/TOP/time"] = [7], times
+        file["history/nodes/TOP/increment"] = np.arange(1, len(times) + 1)
+        file["history/nodes/TOP/temperature"] = times[:, None]
+        file["history/nodes/TOP/temperature"].attrs["unit"] = "C"
+    with Result(path) as opened:
+        (top,) = history.chosen(opened, "TOP")
+        (axes,) = history.picture(opened, top, ["temperature"]).axes
+    assert (axes.get_xlabel(), axes.get_ylabel()) == ("Time (s)", "Temperature (\N{DEGREE SIGN}C)")
+    assert report([str(path), "--out", str(tmp_path)]) == 0
+    (chart,) = [each for each in page_data(tmp_path / "case.html")["history"] if "curves" in each]
+    assert chart["unit"] == "\N{DEGREE SIGN}C"
+
+
 def test_the_page_has_the_checks_of_reached_values(tmp_path):
     """Also one whose words are wider than the column of the listing."""
     judged(tmp_path, WARM, "heat_imbalance_pointwise reaches 1.E3, , LAST, 1., 1.",
            "NT reaches 70., BLOCK.TOP, LAST, 0.2, 1.E-9", status=4)
     assert report([str(tmp_path / "deck.vtkhdf"), "--out", str(tmp_path)]) == 0
-    rows = re.findall("<tr><th scope=\"row\">.*?</tr>", (tmp_path / "deck.html").read_text())
+    rows = re.findall("<tr><th scope=\"row\".*?</tr>", (tmp_path / "deck.html").read_text())
     told = [row for row in rows if " reaches " in row]
     assert "heat_imbalance_pointwise reaches 1000<" in told[0] and "FAIL</span> never reached" in told[0]
     assert "NT reaches 70<" in told[1] and ">PASS</span>" in told[1]

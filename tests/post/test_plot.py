@@ -34,6 +34,7 @@ from thercon.post.fine_mesh import refine  # noqa: E402
 from thercon.post.overlay import read_overlays  # noqa: E402
 from thercon.post.result import Result  # noqa: E402
 from thercon.post.units import Units  # noqa: E402
+from thercon.post.words import known_name  # noqa: E402
 
 
 @pytest.fixture
@@ -976,10 +977,21 @@ def test_fields_of_chosen_quantities_only(tabulate, result, tmp_path):
 @pytest.mark.parametrize("last", [True, False])
 def test_a_quantity_that_there_is_not_is_named(last):
     """And not the next word, whichever of several names is misspelt."""
-    for names in (["xx", "mises"], ["mises", "xx"], ["xx", "mises", "yy"]):
+    for names in (["xx", "misess"], ["misess", "xx"], ["xx", "misess", "yy"]):
         words = [["--quantity", *names], ["r.vtkhdf"]]
-        with pytest.raises(UserError, match="invalid choice: 'mises' .choose from '?temperature'?"):
+        told = "invalid choice: 'misess', nearest: 'von_mises' .choose from temperature"
+        with pytest.raises(UserError, match=told):
             parser().parse_args(spread(["fields", *sum(words[:: 1 - 2 * last], [])]))
+
+
+def test_quantities_have_the_names_of_verify_too():
+    """Of fields and of histories, in any case; names of the file go before."""
+    names = ["MISES", "nt", "S12", "HFL2", "PEEQ", "Von_Mises"]
+    options = parser().parse_args(spread(["fields", "--quantity", *names, "r.vtkhdf"]))
+    assert options.quantity == ["von_mises", "temperature", "xy", "flux_y", "plastic_strain", "von_mises"]
+    known = ["stress_xy", "heat_flux_y", "equivalent_plastic_strain", "creep_strain_zz", "displacement_x"]
+    assert [known_name(name, known) for name in ("S12", "HFL2", "PEEQ", "CE33", "u1")] == known
+    assert known_name("U2", known) == "U2"
 
 
 def test_titles_of_fields_side_by_side_stand_apart(laid_out, result):

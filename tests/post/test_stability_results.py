@@ -2,6 +2,7 @@
 
 import csv
 import re
+import shutil
 import sys
 from pathlib import Path
 
@@ -91,4 +92,20 @@ def test_a_motion_is_drawn_alone_and_where_there_is_one(result, tmp_path, capsys
     assert plot(["fields", str(result), *MODE, "yy", "--out", str(tmp_path)]) == 2
     assert "draw it apart from other fields" in capsys.readouterr().err
     assert plot(["fields", str(result), *MODE, "--increment", "3", "--out", str(tmp_path)]) == 2
-    assert "no field 'mode_temperature' at this load" in capsys.readouterr().err
+    said = capsys.readouterr().err
+    assert "no field 'mode_temperature' at this load" in said
+    assert said.endswith("; increments that have it: 2, 4\n")
+
+
+def test_a_run_that_ended_before_an_analysis_says_so(result, tmp_path, capsys):
+    path = Path(shutil.copy(result, tmp_path))
+    with h5py.File(path, "r+") as file:
+        for key in list(file["stability"]):
+            none = file["stability"][key][:0]
+            del file["stability"][key]
+            file["stability"][key] = none
+        file["VTKHDF/PointData/mode_temperature"][...] = np.nan
+    assert plot(["fields", str(path), *MODE, "--out", str(tmp_path)]) == 2
+    assert "; no state was analysed: the run did not come to" in capsys.readouterr().err
+    assert page(path) == []
+    assert "<p>Stability in time: no state was analysed: " in path.with_suffix(".html").read_text()

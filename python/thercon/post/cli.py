@@ -7,8 +7,9 @@ from itertools import chain
 
 from . import accuracy, branch, convergence, courses, fields, history, mesh, profiles, style, trade, zones
 from .deck_changes import changed
-from .errors import UserError, program
+from .errors import UserError, nearest_name, program
 from .result import FIELD_SOURCES, Result
+from .words import known_name
 
 SUMMARY = """Pictures of a thercon result: each call writes PNG and SVG.
 
@@ -82,7 +83,8 @@ def parser():
     )
     added["history"].add_argument(
         "--quantity", action="append", metavar="QUANTITY ...",
-        help="quantity, or several, such as temperature or displacement_x (default: all)",
+        help="quantity, or several, such as temperature or displacement_x, or as *VERIFY names them "
+        "(default: all)",
     )
     add_name(added["branch"])
     added["branch"].add_argument(
@@ -158,9 +160,9 @@ def add_fields(picture):
     picture.add_argument(
         "--quantity",
         action="append",
-        choices=tuple(FIELD_SOURCES),
+        type=field_name,
         metavar="QUANTITY ...",
-        help=f"panel to draw, or several, of {', '.join(FIELD_SOURCES)} "
+        help=f"panel to draw, or several, of {', '.join(FIELD_SOURCES)}, or as *VERIFY names them "
         f"(default: those present of {', '.join(fields.USUAL[False])}; in axisymmetry of "
         f"{', '.join(fields.USUAL[True])})",
     )
@@ -193,6 +195,15 @@ def add_fields(picture):
         default="model",
         help="what to show (default: model)",
     )
+
+
+def field_name(word):
+    """Return the field that a word of the command line means."""
+    name = known_name(word, FIELD_SOURCES)
+    if name not in FIELD_SOURCES:
+        raise argparse.ArgumentTypeError(f"invalid choice: '{word}'{nearest_name(word, FIELD_SOURCES)} "
+                                         f"(choose from {', '.join(FIELD_SOURCES)})")
+    return name
 
 
 def spread(arguments):

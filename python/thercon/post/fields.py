@@ -25,7 +25,7 @@ from .field_colours import (
     settle,
 )
 from .fine_mesh import refine
-from .result import CELL_FIELDS, FIELD_SOURCES, MODE, OPEN
+from .result import CELL_FIELDS, FIELD_SOURCES, MODE, NO_ANALYSIS, OPEN
 from .rigid_surfaces import draw_rigid, lines_of, with_lines
 from .style import plt
 
@@ -54,6 +54,7 @@ TITLES = {
 AMPLITUDE = 0.05  # of the size of the model: displacement of a motion that is drawn
 COLUMNS = 3  # of panels
 LOOKED_AT = 20  # times at most
+MOST_NAMED = 8  # increments
 FINE_CELLS = 60000  # about as many parts as a page can show
 
 
@@ -202,9 +203,10 @@ def read_fields(result, step, quantities):
     there = {q: v for q, v in there.items() if v is not None and np.isfinite(v).any()}
     for quantity in quantities or ():
         if quantity not in there:
+            why = f"; {motion_words(result)}" if quantity == MODE else ""
             raise UserError(
                 f"{result.path}: no field '{quantity}' at this load "
-                f"(there are: {', '.join(there) or 'none'})"
+                f"(there are: {', '.join(there) or 'none'}){why}"
             )
     if 0 < sum(quantity in CELL_FIELDS for quantity in quantities or ()) < len(quantities or ()):
         raise UserError(
@@ -218,6 +220,18 @@ def read_fields(result, step, quantities):
     if not chosen:
         raise UserError(f"{result.path}: no temperature or stress field at this load")
     return {quantity: there[quantity] for quantity in chosen}
+
+
+def motion_words(result):
+    """Return which increments have a small motion, or why none has."""
+    if result.stability is None:
+        return "the deck has no *STABILITY"
+    times = result.history["time"]
+    there = np.isin(times, result.stability["time"]) & np.isin(times, result.field_times)
+    numbers = [f"{row + 1}" for row in np.flatnonzero(there)]
+    if len(numbers) > MOST_NAMED:
+        numbers[MOST_NAMED - 1 : -1] = ["..."]
+    return f"increments that have it: {', '.join(numbers)}" if numbers else NO_ANALYSIS
 
 
 def check_range(given, fields):

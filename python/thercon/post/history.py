@@ -6,6 +6,7 @@ from . import style
 from .errors import UserError, nearest_name
 from .set_histories import chosen, label
 from .style import plt
+from .words import known_name
 
 MOST_CURVES = 6  # of one panel; more are drawn as their range
 OF_SEVERAL = "Of {}: lines are means, bands reach from the smallest to the largest value"
@@ -17,28 +18,28 @@ def draw(result, options):
     kinds = {}
     for each in found:
         kinds.setdefault(each.name, set()).add(each.kind)
-    pictures = [(each, quantities(result, each, found, options.quantity)) for each in found]
+    wanted = chosen_quantities(result, found, options.quantity or ())
+    pictures = [(each, [key for key in wanted or each.values if key in each.values]) for each in found]
     written = []
     for each, keys in pictures:
         if not keys:
             continue
         parts = [each.name] if len(found) > 1 or options.set else []
         parts += [each.kind] if len(kinds[each.name]) > 1 else []
-        name = style.file_name(result, "history", *parts, *(options.quantity or []))
+        name = style.file_name(result, "history", *parts, *wanted)
         written += style.write(picture(result, each, keys), table(result, each, keys), options, name)
     return written
 
 
-def quantities(result, history, found, wanted):
-    """Return the quantities of a set that are drawn: those asked for that it has, all without any."""
-    if not wanted:
-        return list(history.values)
+def chosen_quantities(result, found, wanted):
+    """Return the names, in the file, of the quantities asked for."""
     known = list(dict.fromkeys(key for each in found for key in each.values))
-    for key in wanted:
-        if key not in known:
-            raise UserError(f"{result.path}: has no history of '{key}'{nearest_name(key, known)}: "
+    names = [known_name(name, known) for name in dict.fromkeys(wanted)]
+    for name in names:
+        if name not in known:
+            raise UserError(f"{result.path}: has no history of '{name}'{nearest_name(name, known)}: "
                             f"there are {', '.join(known)}")
-    return [key for key in dict.fromkeys(wanted) if key in history.values]
+    return names
 
 
 def abscissa(result, history):
@@ -47,7 +48,7 @@ def abscissa(result, history):
     load = result.history["load"][history.increment - 1]
     rises = np.all(np.diff(load) > 0.0) or np.all(np.diff(load) < 0.0)
     if "heat_stored" in result.history or not rises:
-        return "Time", history.time
+        return result.units.label("Time", "time"), history.time
     return result.units.load_label(result.load_label), load
 
 

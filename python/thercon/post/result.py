@@ -13,7 +13,7 @@ from .cells import Cells
 from .checked_file import need, numbers, open_checked
 from .errors import UserError, nearest_name
 from .joined_contacts import common, join
-from .units import UNIT_NAMES, Units
+from .units import UNIT_NAMES, Units, unit_of
 from .words import place_words, printable
 
 OPEN, SLIP, STICK = 0, 1, 2
@@ -59,6 +59,8 @@ UNJUDGED = "inside a step: the mesh is not refined for this time"
 MARKED = "dotted lines are ends of steps; the mesh is refined for these alone"
 ROUND = ("cpu_seconds", "unknowns", "elements", "increments")
 ANALYSIS = ("time", "unstable_modes", "growth_rate", "period")
+NO_ANALYSIS = ("no state was analysed: the run did not come to the end of a step with *STABILITY, nor to "
+               "an increment of its FREQUENCY=")
 ITERATION = ("increment", "iteration", "residual", "g_min", "g_max")
 COMPONENTS = {"displacement": 3, "mode_displacement": 3, "stress": 4, "principal_stress": 3,
               "heat_flux": 3}
@@ -122,9 +124,7 @@ class Contact:
 
     def unit(self, key):
         """Return the unit of a quantity; empty where the deck names none."""
-        unit = self.units.get("pressure" if key == "peak_pressure" else key, "")
-        is_named = not re.search("length|stress|power|temperature", unit)
-        return unit.replace("^2", "\N{SUPERSCRIPT TWO}") if is_named else ""
+        return unit_of(self.units.get("pressure" if key == "peak_pressure" else key, ""))
 
     def axis(self, along):
         """Return (name, coordinate of the pairs): x where it grows along the face, of several

@@ -1,7 +1,6 @@
 """Histories of sets: what *NODE PRINT and *EL PRINT keep in the result file, /history/nodes and
 /history/elements."""
 
-import re
 from dataclasses import dataclass
 
 import h5py
@@ -10,6 +9,7 @@ import numpy as np
 from .checked_file import need, numbers
 from .errors import UserError, nearest_name
 from .result import text, words_of
+from .units import unit_of
 
 KINDS = {"nodes": "node", "elements": "element"}
 OF_ROWS = ("increment", "time")
@@ -66,9 +66,7 @@ def read_set(group, kind, word, name):
         values[key] = numbers(group, key)
         fits = values[key].shape in ((rows,), (rows, len(labels)))
         need(group, fits, f"{key} has not one row for each increment")
-        unit = text(group[key].attrs.get("unit", ""))
-        is_named = unit != "-" and not re.search("length|stress|power|temperature", unit)
-        units[key] = unit.replace("^2", "\N{SUPERSCRIPT TWO}") if is_named else ""
+        units[key] = unit_of(text(group[key].attrs.get("unit", "")))
     increment, time = (numbers(group, key, like=(rows,)) for key in OF_ROWS)
     need(group, np.all(increment > 0), "increment has values that are no counts from 1")
     return SetHistory(kind, name, increment, time, labels, values, units)

@@ -1,5 +1,7 @@
 """Units and labels of the axes."""
 
+import re
+
 UNIT_NAMES = ("length", "stress", "power", "temperature", "time")
 
 
@@ -49,3 +51,10 @@ class Units:
 def plain_unit(unit):
     """Return a unit as pictures show it."""
     return "\N{DEGREE SIGN}C" if unit == "C" else unit.replace("$", "")
+
+
+def unit_of(words):
+    """Return the unit that a dataset names as pictures and page show it; empty where the deck names
+    none and it has a quantity in its place."""
+    is_named = words != "-" and not re.search("length|stress|power|temperature", words)
+    return plain_unit(words).replace("^2", "\N{SUPERSCRIPT TWO}") if is_named else ""

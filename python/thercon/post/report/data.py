@@ -103,7 +103,7 @@ def contact_data(result, contact):
         "friction": contact.friction,
         "status": packed(contact["status"], "u1"),
         "profiles": {key: packed(contact[key]) for key in (OF_HEAT if result.is_of_heat else PROFILES)
-                     if is_told(result, contact, key)},
+                     if is_told(result, contact, key, coordinate, windows[1])},
         "edges": {
             key: packed(contact.edge_on_axis(contact[f"edges_{key}"], coordinate))
             for key in ("contact", "stick")
@@ -127,13 +127,14 @@ def joined(contact, key, coordinate):
     return rows, contact.edge_on_axis(places, coordinate)
 
 
-def is_told(result, contact, key):
-    """Whether a contact has a profile that is more than rounding."""
+def is_told(result, contact, key, coordinate, window):
+    """Whether a contact has, in the window, a profile that is more than rounding."""
     if contact.get(key) is None:
         return False
+    shown = (coordinate >= window[0]) & (coordinate <= window[1])
     size = {"shear": largest(contact["pressure"]), "gap": np.ptp(result.cells.points[result.cells.used]),
             "heat_flux": largest(hottest(contact) * contact.data.get("conductance", 0.0))}
-    return key == "pressure" or largest(contact[key]) > NOISE * size.get(key, 0.0)
+    return key == "pressure" or largest(contact[key][:, shown]) > NOISE * size.get(key, 0.0)
 
 
 def largest(values):

@@ -55,8 +55,9 @@ def read_listing(path, cards):
         return None
     summary = [line.strip() for line in section(lines, "SUMMARY")]
     ended = [line.strip() for line in section(lines, "ENDED EARLY")]
-    # Why, then a sentence on the results.
-    words = re.sub(r"(?<!\.) (The results|No increment) ", r". \1 ", " ".join(takewhile(bool, ended)))
+    # Why, then a sentence on the results, and one on each attempt.
+    words = re.sub(r"\.? (The results|No increment|attempt \d+ of size) ",
+                   lambda begin: f". {begin[1][0].upper()}{begin[1][1:]} ", " ".join(takewhile(bool, ended)))
     found = Listing(ended_early=words)
     # The page tells the reason beside the outcome; without one a later round is being solved.
     found.outcome = POINTER.sub("" if ended else r"\1", next((line for line in summary if line), ""))

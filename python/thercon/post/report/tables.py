@@ -4,7 +4,8 @@ import re
 
 import numpy as np
 
-from ..result import ANALYSIS, text, words_of
+from ..result import ANALYSIS, NO_ANALYSIS, text, words_of
+from ..units import unit_of
 from .data import contacts_of, plain
 from .html import html, joined
 
@@ -23,8 +24,9 @@ def table(caption, head, rows, numbers=()):
     top = joined(html('<th scope="col"{}>{}</th>', *each) for each in zip(looks, head))
     lines = []
     for row in rows:
-        cells = [html('<th scope="row">{}</th>', row[0])]
-        cells += [html("<td{}>{}</td>", looks[k], cell) for k, cell in enumerate(row[1:], 1)]
+        cells = [html('<th scope="row" data-head="{}">{}</th>', head[0], row[0])]
+        cells += [html('<td{} data-head="{}">{}</td>', looks[k], head[k], cell)
+                  for k, cell in enumerate(row[1:], 1)]
         lines.append(html("<tr>{}</tr>", joined(cells)))
     return html(
         '<div class="wide"><table><caption>{}</caption><thead><tr>{}</tr></thead>'
@@ -98,7 +100,7 @@ def uncertainties(result):
     others[f"Heat of the model {said}"] = result.uncertainties("increment")
     for caption, known in others.items():
         rows = [[LARGEST.get(key, words_of(key)), number(each[-1, 0]),
-                 *uncertainty_cells(each, why, unit)]
+                 *uncertainty_cells(each, why, unit_of(unit))]
                 for key, (unit, _, each, why) in known.items() if np.nan_to_num(each[-1, 0])]
         if rows:
             found.append(uncertainty_table(caption, known, rows))
@@ -132,6 +134,8 @@ def stability(result, listing):
     found = result.stability
     if found is None:
         return ""
+    if not len(found["time"]):
+        return html("<p>Stability in time: {}.</p>", NO_ANALYSIS)
     rows = []
     for time, modes, rate, period in zip(*(found[key] for key in ANALYSIS)):
         row = int(np.argmin(np.abs(result.history["time"] - time)))
