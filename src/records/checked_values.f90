@@ -55,7 +55,7 @@ contains
       if (.not. any(ieee_is_nan(values))) worst = values(maxloc(abs(values - check%value), dim=1))
    end function worst_of
 
-   !> Number in the deck of the node whose value is worst_of; 0 where the check is not about a set of
+   !> Number in the deck of the node whose value is worst_of; 0 where a check is about no set of
    !> nodes.
    pure integer function worst_node(check, mesh, point_node, values)
       type(verify_type), intent(in) :: check
