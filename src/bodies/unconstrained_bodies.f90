@@ -53,8 +53,9 @@ contains
          if (is_last) then
             words = words//motions(i)%company//': no *BOUNDARY and no contact holds it; '// &
                remedy(motions(i))
-            if (any(laws%heat%leaves_plane()) .and. .not. motions(i)%deforms) words = words// &
-               '; where *GAP HEAT GENERATION gives v, friction does not act in the plane'
+            if (any(model%interactions%heat%leaves_plane()) .and. .not. motions(i)%deforms) &
+               words = words//'; where *GAP HEAT GENERATION gives v, friction does not act in '// &
+               'the plane'
             call append(messages, words)
          else if (motions(i)%company /= motions(i + 1)%company) then
             words = words//motions(i)%company
