@@ -53,9 +53,10 @@ contains
          if (is_last) then
             words = words//motions(i)%company//': no *BOUNDARY and no contact holds it; '// &
                remedy(motions(i))
-            if (any(model%interactions%heat%leaves_plane()) .and. .not. motions(i)%deforms) &
+            if (any(model%interactions%heat%leaves_plane()) .and. .not. motions(i)%deforms) then
                words = words//'; where *GAP HEAT GENERATION gives v, friction does not act in '// &
-               'the plane'
+                  'the plane'
+            end if
             call append(messages, words)
          else if (motions(i)%company /= motions(i + 1)%company) then
             words = words//motions(i)%company

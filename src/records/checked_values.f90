@@ -66,8 +66,9 @@ contains
       integer, allocatable :: nodes(:)
 
       worst_node = 0
+      if (size(values) < 2) return
       quantity = verifiable(find_quantity(verifiable, check%quantity))
-      if (quantity%kind /= of_nodes .or. size(values) < 2) return
+      if (quantity%kind /= of_nodes) return
       nodes = pack(point_node, is_wanted(check%where, mesh, point_node))
       worst_node = mesh%node_number(nodes(maxloc(abs(values - check%value), dim=1)))
    end function worst_node
