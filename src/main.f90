@@ -48,9 +48,15 @@ program thercon
       end do
    case (command_keywords)
       lines = keyword_lines()
-      do i = 1, size(lines)
+      status = status_deck
+      do i = 2, size(lines)
+         if (index(lines(i)%value, command%keyword) /= 1) cycle
+         if (status == status_deck) call print_line(output_unit, lines(1)%value)
+         status = 0
          call print_line(output_unit, lines(i)%value)
       end do
+      if (status == status_deck) call print_error('thercon', 'no keyword begins with '// &
+         command%keyword//'; thercon --keywords prints all')
    case (command_version)
       call print_versions()
    case (command_check)

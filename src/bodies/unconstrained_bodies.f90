@@ -51,8 +51,13 @@ contains
          end if
          words = words//motions(i)%verb()//' '//motions(i)%way
          if (is_last) then
-            call append(messages, words//motions(i)%company// &
-               ': no *BOUNDARY and no contact holds it; '//remedy(motions(i)))
+            words = words//motions(i)%company//': no *BOUNDARY and no contact holds it; '// &
+               remedy(motions(i))
+            if (any(model%interactions%heat%leaves_plane()) .and. .not. motions(i)%deforms) then
+               words = words//'; where *GAP HEAT GENERATION gives v, friction does not act in '// &
+                  'the plane'
+            end if
+            call append(messages, words)
          else if (motions(i)%company /= motions(i + 1)%company) then
             words = words//motions(i)%company
          end if

@@ -55,7 +55,7 @@ contains
       if (.not. any(ieee_is_nan(values))) worst = values(maxloc(abs(values - check%value), dim=1))
    end function worst_of
 
-   !> Number in the deck of the node whose value is worst_of; 0 where the check is not about a set of
+   !> Number in the deck of the node whose value is worst_of; 0 where a check is about no set of
    !> nodes.
    pure integer function worst_node(check, mesh, point_node, values)
       type(verify_type), intent(in) :: check
@@ -66,8 +66,9 @@ contains
       integer, allocatable :: nodes(:)
 
       worst_node = 0
+      if (size(values) < 2) return
       quantity = verifiable(find_quantity(verifiable, check%quantity))
-      if (quantity%kind /= of_nodes .or. size(values) < 2) return
+      if (quantity%kind /= of_nodes) return
       nodes = pack(point_node, is_wanted(check%where, mesh, point_node))
       worst_node = mesh%node_number(nodes(maxloc(abs(values - check%value), dim=1)))
    end function worst_node

@@ -5,7 +5,8 @@ module command_line
    use kinds, only: dp
    use model, only: uncertainty_named
    use spelling, only: nearest_known
-   use text, only: append, read_integer, read_real, split_words, string_type
+   use text, only: append, read_integer, read_real, split_words, string_type, &
+      to_upper
    implicit none
    private
    public :: command_type, read_command, settings_in_words, usage
@@ -34,6 +35,7 @@ module command_line
       type(string_type), allocatable :: settings(:)   !! NAME=VALUE of each --set
       character(:), allocatable :: folder             !! --out, the current folder unless given
       integer :: width = 0                            !! --width, 0 unless given
+      character(:), allocatable :: keyword            !! --keywords, how those begin: * for all
       logical :: quiet = .false.                      !! --quiet or --json
       logical :: json = .false.                       !! --json
       integer :: jobs = 1                             !! --jobs, decks or rows at a time
@@ -51,7 +53,7 @@ module command_line
    end type command_type
 
    !> Lines of --help
-   character(*), parameter :: usage(48) = [character(88) :: &
+   character(*), parameter :: usage(49) = [character(88) :: &
       'usage: thercon run DECK... [--out DIR] [--jobs N] [--width N] [--set NAME=VALUE]', &
       '                           [--quiet] [--json] [--accuracy P%] [--limit SECONDS]', &
       '                           [--errors last|full|no] [--restart RESULT[@TIME]] [--resume]', &
@@ -59,7 +61,7 @@ module command_line
       '       thercon check DECK... [--width N] [--set NAME=VALUE] [--quiet] [--json]', &
       '       thercon trade DECK [--out DIR] [--width N] [--set NAME=VALUE] [--quiet]', &
       '                          [--limit SECONDS] [--jobs N]', &
-      '       thercon --help | --version | --keywords', &
+      '       thercon --help | --version | --keywords [KEYWORD]', &
       '', &
       '  run      solve each deck a/b.inp; write to DIR b.vtkhdf, b.lst, b.sta, b.cvg and, with', &
       '           contact, b.contact.vtkhdf;', &
@@ -89,7 +91,8 @@ module command_line
       '  --limit SECONDS    run: end the rounds of --accuracy in this time with the last whole', &
       '                     one, after the first in any case;', &
       '                     trade: skip rows that would take more CPU time (30)', &
-      '  --keywords         print the keywords of decks, their data cards and parameters', &
+      '  --keywords         print the keywords of decks, their data cards and parameters, or', &
+      '                     of those that begin with KEYWORD', &
       '  --jobs N           solve N decks at a time, or measure N rows of a trade (1)', &
       '', &
       'exit status: 0 ok, 1 deck error, 2 no convergence, 3 internal or I/O error,', &
@@ -130,6 +133,11 @@ contains
          return
       case ('--keywords')
          command%action = command_keywords
+         command%keyword = ''
+         do i = 2, command_argument_count()
+            command%keyword = trim(command%keyword//' '//to_upper(argument(i)))
+         end do
+         command%keyword = '*'//command%keyword(verify(command%keyword//'.', ' *'):)
          return
       case ('trade')
          command%action = command_trade

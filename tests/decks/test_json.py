@@ -66,6 +66,13 @@ def test_a_reason_stands_where_there_is_no_uncertainty(tmp_path):
     assert document["summary"]["bodies"] == []
 
 
+def test_units_that_the_deck_does_not_name_are_told_by_what_is_measured(tmp_path):
+    deck = copy_deck(RODS, tmp_path / "deck.inp", ['*OPTIONS, UNITS="mm MPa"'])
+    document, _ = document_of("run", deck, "--out", tmp_path)
+    told = document["summary"]["interfaces"]["GAP"]
+    assert (told["normal_force"]["unit"], told["heat_rate"]["unit"]) == ("MPa mm^2", "power")
+
+
 def test_nothing_else_is_on_standard_output(tmp_path):
     """Not what ERRORS=FULL costs either."""
     document, _ = document_of("run", RODS, "--out", tmp_path, "--errors", "full")
@@ -155,3 +162,13 @@ def test_the_table_of_keywords_has_every_one(tmp_path):
     assert row.endswith("1 or more    NAME=, TYPE=, (INTERNAL), (TRIM=), (MAX RATIO=)")
     deck = write(tmp_path / "deck.inp", ["*CLOAD", "1, 1, 2."], GOOD)
     assert "1:1: error: *CLOAD" in run("check", deck).stderr
+
+
+def test_the_table_of_some_keywords():
+    whole = run("--keywords").stdout.splitlines()
+    for words in (["gap", "cond"], ["*GAP CONDUCTANCE"]):
+        assert run("--keywords", *words).stdout.splitlines() == [
+            whole[0], *(line for line in whole if line.startswith("*GAP CONDUCTANCE "))]
+    process = run("--keywords", "FLIM")
+    assert process.returncode == 1 and process.stdout == ""
+    assert process.stderr == "thercon: error: no keyword begins with *FLIM; thercon --keywords prints all\n"

@@ -282,6 +282,12 @@ def test_a_percentage_out_of_range_is_refused_with_its_limits(tmp_path, value):
     assert process.stderr.endswith(f", not {value}\n")
 
 
+def test_a_misspelt_quantity_is_told_with_the_nearest(tmp_path):
+    process = run("run", HERTZ, "--accuracy", "force=1%,pressur=1%", folder=tmp_path)
+    assert process.returncode == 1
+    assert process.stderr.endswith(", not force=1%,pressur=1%; the nearest known is pressure\n")
+
+
 def test_named_quantities_have_targets_of_their_own(tmp_path):
     process = run("run", HERTZ, "--accuracy", "force=1%,peak_pressure=20%", "--out", tmp_path)
     assert process.returncode == 0, process.stderr

@@ -151,6 +151,12 @@ def test_rate_is_the_same_with_any_solver_mesh_and_pairing(cards, pairing, tmp_p
     assert "unstable: 1 mode grows, doubling in 270\n" in printed
 
 
+def test_times_have_the_unit_of_the_deck(tmp_path):
+    printed = solved(tmp_path, middle('*OPTIONS, UNITS="m Pa W C h"'))[1]
+    assert "unstable: 1 mode grows, doubling in 270 h\n" in printed
+    assert "growth rates of the leading modes in 1/h: " in " ".join(printed.split())
+
+
 @pytest.mark.changes("STABILITY, MODES")
 @pytest.mark.parametrize("branch", [0, 1, 2])
 def test_leading_modes_are_those_of_dense_eigenvalues(branch, tmp_path):

@@ -88,13 +88,14 @@ def test_heading_is_the_title_of_the_listing(tmp_path):
 def test_units_label_the_result(tmp_path):
     """And convert nothing."""
     decks = [[f'*OPTIONS, UNITS="{units}"', *block(*static("*DSLOAD", "BODY.TOP, P, 5."))]
-             for units in ("cm MPa W C", "m Pa kW K")]
-    for deck, words in zip(decks, (("cm", "MPa", "W", "C"), ("m", "Pa", "kW", "K")), strict=True):
+             for units in ("cm MPa W C", "m Pa kW K", "mm MPa")]
+    labels = ("cm", "MPa", "W", "C"), ("m", "Pa", "kW", "K"), ("mm", "MPa", "", "")
+    for deck, words in zip(decks, labels, strict=True):
         with h5py.File(judge(tmp_path, deck, stressed([0.0, -5.0, 0.0]))) as file:
             found = [file["run"].attrs[f"unit_{name}"]
                      for name in ("length", "stress", "power", "temperature")]
         assert [text.decode() if isinstance(text, bytes) else text for text in found] == list(words)
-    note_changes(*decks)
+    note_changes(*decks[:2])
 
 
 @pytest.mark.changes("OPTIONS, WIDTH")

@@ -5,6 +5,7 @@ face, friction mu p while the upper one (the slave) slides to the right, and S11
 expansion the heat is q = T/(2 h/k + 1/omega), omega = C0 + C1 p.
 """
 
+import json
 import re
 from math import sqrt
 
@@ -215,8 +216,20 @@ def test_a_set_is_judged_at_its_worst_node(tmp_path):
     process = run("run", "--quiet", verify(tmp_path / "set.inp", model(), [check]), "--out",
                   tmp_path)  # fmt: skip
     assert process.returncode == 4
-    assert (": check failed: NT UPPER at time 1: 100 (no estimate: inside a step; ERRORS=FULL), "
+    worst = min(number for number, (_, y) in HIGH.items() if y == 1.0)
+    assert (f": check failed: NT UPPER, node {worst} at time 1: 100 (no estimate: inside a step; ERRORS=FULL), "
             "expected") in process.stderr
+    assert f"ERRORS=FULL), node {worst}\n" in (tmp_path / "set.lst").read_text()
+
+
+def test_the_node_that_reaches_a_value_at_another_time_is_named(tmp_path):
+    """The upper nodes of the block are at HOT at the end and at half of it in the middle of the step; the
+    document names the node, as it does for a check that passes."""
+    deck = verify(tmp_path / "reached.inp", model(), [f"NT reaches {HOT / 4}, UPPER.TOP, LAST, 0.25, 1.",
+                                                      f"NT, {MIDDLE}, LAST, 0., 1E9, ABS"])
+    document = json.loads(run("run", "--json", deck, "--out", tmp_path).stdout)
+    top = [number for number, (_, y) in HIGH.items() if y == 1.0]
+    assert document["checks"][0]["node"] in top and "node" not in document["checks"][1]
 
 
 def test_a_check_without_a_value_fails_with_the_reason(tmp_path):
