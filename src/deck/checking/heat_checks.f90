@@ -91,9 +91,10 @@ contains
       integer, allocatable :: elements(:)
       integer :: k
 
+      is_loaded = faces(2, :) == load%component
+      if (.not. any(is_loaded)) return
       elements = load%members(mesh%element_sets)
       do k = 1, size(faces, 2)
-         is_loaded(k) = faces(2, k) == load%component
          if (is_loaded(k)) is_loaded(k) = any(elements == faces(1, k))
       end do
    end function is_loaded
