@@ -44,9 +44,9 @@ contains
       integer :: k
 
       changed = text
-      if (or_blank(label) == '') return
       k = index(text, word)
-      if (k > 0) changed = text(:k - 1)//label//with(word, label, text(k + len(word):))
+      if (k == 0) return
+      if (or_blank(label) /= '') changed = text(:k - 1)//label//with(word, label, text(k + len(word):))
    end function with
 
 end module unit_labels

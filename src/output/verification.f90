@@ -22,7 +22,7 @@ module verification
       real(dp) :: time = 0.0_dp                 !! total time at which it was judged [time]
       real(dp) :: found = 0.0_dp                !! value found, the worst of a set
       real(dp) :: deviation = 0.0_dp            !! magnitude of its deviation, relative for REL
-      integer :: node = 0                       !! where in a set of nodes; 0 for no set
+      integer :: node = 0                       !! where in a set it failed; 0 for none
       real(dp), allocatable :: uncertainty      !! of the value; unallocated for none
       integer :: no_estimate = no_reason        !! why it has none
       character(:), allocatable :: reason       !! why there is no value; else empty
@@ -82,7 +82,8 @@ contains
          self%outcomes(i) = outcome_of(model%verifications(i), values, reason)
          self%outcomes(i)%time = record%time
          if (len(self%outcomes(i)%reason) > 0) cycle
-         self%outcomes(i)%node = worst_node(model%verifications(i), model%mesh, point_node, values)
+         if (.not. self%outcomes(i)%passed) self%outcomes(i)%node = worst_node( &
+            model%verifications(i), model%mesh, point_node, values)
          if (.not. is_estimable(model%verifications(i))) cycle
          self%outcomes(i)%no_estimate = reason_inside_step(model)
          if (allocated(record%check_uncertainties)) then
@@ -171,7 +172,7 @@ contains
       end if
    end function failure_words
 
-   !> Where the value of a set was found; empty for no set.
+   !> Where a check of a set failed; empty for no set.
    pure function node_words(outcome) result(words)
       type(outcome_type), intent(in) :: outcome
       character(:), allocatable :: words            !! such as ', node 11'

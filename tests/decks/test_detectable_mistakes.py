@@ -359,19 +359,18 @@ def test_other_characters_are_taken(tmp_path):
     assert warnings(tmp_path, text, cards, check) == []
 
 
-@pytest.mark.parametrize(("gap", "film", "faces"), [
-    (0.0, "HIGH.BOTTOM, F, 20., 1.", 2), (0.01, "LOW, F3, 20., 1.", 2), (-0.01, "HIGH.BOTTOM, F, 20., 1.", 2),
-    (0.2, "HIGH.BOTTOM, F, 20., 1.", 0), (0.0, "HIGH, F3, 20., 1.", 0)])
-def test_films_on_faces_in_contact(tmp_path, gap, film, faces):
+@pytest.mark.parametrize(("gap", "film", "warned"), [
+    (0.0, "HIGH.BOTTOM, F, 20., 1.", True), (0.01, "LOW, F3, 20., 1.", True), (-0.01, "HIGH.BOTTOM, F, 20., 1.", True),
+    (0.2, "HIGH.BOTTOM, F, 20., 1.", False), (0.0, "HIGH, F3, 20., 1.", False)])
+def test_films_on_faces_in_contact(tmp_path, gap, film, warned):
     """The upper block is over the right half of the lower one."""
     cards = blocks(shift=2.0, gap=gap, kinds=("CPE4", "CPE4"))
     step = ["*STEP", "*HEAT TRANSFER, STEADY STATE", "1., 1.", "*FILM", film, "*BOUNDARY", "LOW.BOTTOM, 11, 11, 0.",
             "*END STEP"]
     pair = [PAIR[0], "*GAP CONDUCTANCE", "1., 0.", *PAIR[1:]]
     found = [each for each in warnings(tmp_path, cards, pair, step) if "film" in each[0]]
-    assert found == ([] if not faces else [(
-        "the film acts on faces of contact pair F that touch the other surface; leave these faces out; "
-        f"their number: {faces}", film)])
+    assert found == ([] if not warned else [(
+        "the film acts on faces of contact pair F that touch the other surface; leave these faces out", film)])
 
 
 @pytest.mark.parametrize("used", [True, False])

@@ -2,7 +2,7 @@
 !> contact, coefficients of expansion in another unit than the temperatures.
 module heat_checks
    use conductance_laws, only: law_none
-   use contact_definitions, only: contact_definition_type, is_removed
+   use contact_definitions, only: is_removed
    use deck_context, only: deck_type
    use equations, only: facing_nodes
    use deck_source, only: place_type
@@ -10,11 +10,10 @@ module heat_checks
    use kinds, only: dp
    use load_requests, only: request_type
    use materials, only: follows_temperature, in_plane, of_expansion
-   use mesh, only: mesh_type
    use model, only: model_type
    use steps, only: dof_temperature, load_film_coefficient, load_film_sink, load_temperature, &
       solves_heat, solves_mechanics
-   use text, only: counted, others, to_text
+   use text, only: counted, to_text
    implicit none
    private
    public :: check_heat_paths, check_starts, temperature_range
@@ -32,10 +31,10 @@ contains
 
       call check_expansion(deck)
       if (.not. any(solves_heat(deck%model%steps%analysis))) return
+      call check_films(deck)
       do i = 1, size(deck%model%contacts)
          associate (contact => deck%model%contacts(i), interaction => &
             deck%model%interactions(deck%model%contacts(i)%interaction))
-            call check_films(contact, i, deck)
             if (interaction%law%open_kind /= law_none) cycle
             if (interaction%law%closed_kind /= law_none) cycle
             call deck%warning(place_type(image=contact%card), 'no heat crosses '//contact%name// &
@@ -47,56 +46,47 @@ contains
 
    !> Warns of films on faces that touch the other surface of a contact pair; heat fluxes there may
    !> stand for friction. The mesh is not refined yet.
-   subroutine check_films(contact, index, deck)
-      type(contact_definition_type), intent(in) :: contact
-      integer, intent(in) :: index                        ! of it
+   subroutine check_films(deck)
       type(deck_type), intent(inout) :: deck
-      logical, allocatable :: of_master(:), of_slave(:)
-      integer :: i, n
+      integer :: film(4, size(deck%mesh%element_number))   ! the last one of each side, or 0
+      integer :: i, on_master, on_slave
 
-      associate (mesh => deck%mesh, loads => deck%loads, slave => deck%mesh%surfaces( &
-         contact%slave)%faces, master => deck%mesh%surfaces(contact%master)%faces)
-         of_slave = spread(.false., 1, size(slave, 2))
-         of_master = spread(.false., 1, size(master, 2))
-         do i = 1, loads%count
-            associate (load => loads%items(i))
-               if (load%kind == load_film_coefficient .and. .not. is_removed( &
-                  deck%model%steps(:load%step)%changes, index)) then
-                  of_slave = of_slave .or. is_loaded(load, slave, mesh)
-                  of_master = of_master .or. is_loaded(load, master, mesh)
-               end if
-               ! A data card may make several requests.
-               if (i < loads%count) then
-                  if (loads%items(i + 1)%card == load%card) cycle
-               end if
-               if (.not. (any(of_slave) .or. any(of_master))) cycle
-               n = count(of_slave .and. touches(mesh, slave, master)) + &
-                  count(of_master .and. touches(mesh, master, slave))
-               if (n > 0) call deck%warning(load%place, 'the film acts on faces of '// &
-                  contact%title()//' that touch the other surface; leave these faces out'// &
-                  others(n, '; their number: '))
-               of_slave = .false.
-               of_master = .false.
+      associate (loads => deck%loads%items(:deck%loads%count))
+         if (all(loads%kind /= load_film_coefficient)) return
+         film = 0
+         do i = 1, size(loads)
+            if (loads(i)%kind == load_film_coefficient) film(loads(i)%component, &
+               loads(i)%members(deck%mesh%element_sets)) = i
+         end do
+         do i = 1, size(deck%model%contacts)
+            associate (contact => deck%model%contacts(i), surfaces => deck%mesh%surfaces)
+               on_slave = film_between(surfaces(contact%slave)%faces, &
+                  surfaces(contact%master)%faces)
+               on_master = film_between(surfaces(contact%master)%faces, &
+                  surfaces(contact%slave)%faces)
+               if (max(on_slave, on_master) > 0) call deck%warning( &
+                  loads(max(on_slave, on_master))%place, 'the film acts on faces of '// &
+                  contact%title()//' that touch the other surface; leave these faces out')
             end associate
          end do
       end associate
+   contains
+      !> The last film on faces that touch others while the contact pair is not removed, or 0.
+      integer function film_between(faces, opposite) result(last)
+         integer, intent(in) :: faces(:, :), opposite(:, :)   ! (2, n) as in a surface
+         integer :: films(size(faces, 2)), k
+
+         films = [(film(faces(2, k), faces(1, k)), k=1, size(films))]
+         do k = 1, size(films)
+            if (films(k) == 0) cycle
+            associate (step => deck%loads%items(films(k))%step)
+               if (is_removed(deck%model%steps(:step)%changes, i)) films(k) = 0
+            end associate
+         end do
+         last = 0
+         if (any(films > 0)) last = maxval(merge(films, 0, touches(deck%mesh, faces, opposite)))
+      end function film_between
    end subroutine check_films
-
-   !> Which faces a load acts on.
-   pure function is_loaded(load, faces, mesh)
-      type(request_type), intent(in) :: load
-      integer, intent(in) :: faces(:, :)                  ! (2, n) as in a surface
-      type(mesh_type), intent(in) :: mesh
-      logical :: is_loaded(size(faces, 2))
-      integer, allocatable :: elements(:)
-      integer :: k
-
-      elements = load%members(mesh%element_sets)
-      do k = 1, size(faces, 2)
-         is_loaded(k) = faces(2, k) == load%component
-         if (is_loaded(k)) is_loaded(k) = any(elements == faces(1, k))
-      end do
-   end function is_loaded
 
    !> Warns of nodes of bodies without an initial temperature where others have one that is not 0.
    !> The mesh is not refined yet.
