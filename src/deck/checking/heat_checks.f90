@@ -51,6 +51,7 @@ contains
       integer :: film(4, size(deck%mesh%element_number))   ! the last one of each side, or 0
       integer :: i, on_master, on_slave
 
+      if (deck%loads%count == 0) return
       associate (loads => deck%loads%items(:deck%loads%count))
          if (all(loads%kind /= load_film_coefficient)) return
          film = 0
@@ -60,6 +61,7 @@ contains
          end do
          do i = 1, size(deck%model%contacts)
             associate (contact => deck%model%contacts(i), surfaces => deck%mesh%surfaces)
+               if (allocated(surfaces(contact%master)%drawing)) cycle
                on_slave = film_between(surfaces(contact%slave)%faces, &
                   surfaces(contact%master)%faces)
                on_master = film_between(surfaces(contact%master)%faces, &
