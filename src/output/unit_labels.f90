@@ -46,7 +46,8 @@ contains
       changed = text
       k = index(text, word)
       if (k == 0) return
-      if (or_blank(label) /= '') changed = text(:k - 1)//label//with(word, label, text(k + len(word):))
+      if (or_blank(label) /= '') changed = text(:k - 1)//label//with(word, label, &
+         text(k + len(word):))
    end function with
 
 end module unit_labels
