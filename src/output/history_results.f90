@@ -7,7 +7,7 @@ module history_results
    use kinds, only: dp, long
    use model, only: model_type
    use records, only: increment_record_type
-   use requested_tables, only: due_tables, requested_table_type, table_column_type, tables_of_step
+   use requested_tables, only: requested_table_type, table_column_type, tables_of_step
    use text, only: append_text => append, string_type
    implicit none
    private
@@ -176,16 +176,13 @@ contains
 
    !> Adds the tables of an increment: a row for each set of which one is due, NaN for what none of
    !> them has.
-   subroutine append(self, record, model)
+   subroutine append(self, record, tables)
       class(history_results_type), intent(inout) :: self
       type(increment_record_type), intent(in) :: record
-      type(model_type), intent(in) :: model
-      type(requested_table_type), allocatable :: tables(:)
+      type(requested_table_type), intent(in) :: tables(:)    !! those that are due
       integer, allocatable :: places(:)
       integer :: h, i, k
 
-      if (size(self%histories) == 0) return
-      call due_tables(record, model, tables)
       places = [(place_of(self, tables(i)), i=1, size(tables))]
       where (tables%has_uncertainties) places = 0
       do h = 1, size(self%histories)

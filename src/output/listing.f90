@@ -22,6 +22,7 @@ module listing
    use no_estimates, only: no_reason, reason_of_run
    use open_files, only: empty_file, lock_file, unlock_file, write_to_file
    use records, only: increment_record_type
+   use requested_tables, only: requested_table_type
    use run_sizes, only: run_size_type
    use run_summaries, only: in_times, run_entries, run_entry_type, run_summary_type
    use summary, only: summary_type
@@ -131,11 +132,12 @@ contains
 
    !> Adds the block of an accepted increment, with its PRINT tables where these are due.
    !> Error: status_internal, when the file cannot be written.
-   subroutine add(self, record, model, interfaces, error)
+   subroutine add(self, record, model, interfaces, tables, error)
       class(listing_type), intent(inout) :: self
       type(increment_record_type), intent(in) :: record
       type(model_type), intent(in) :: model
       type(contact_points_type), intent(in) :: interfaces(:) !! contact points of every interface
+      type(requested_table_type), intent(in) :: tables(:)    !! of *NODE PRINT, *EL PRINT, now due
       type(error_type), allocatable, intent(out) :: error !! what went wrong
       integer :: i
       logical :: has_tables
@@ -167,7 +169,7 @@ contains
          if (allocated(record%history_uncertainties)) call print_history_uncertainties(self%page, &
             record%history_uncertainties)
       end if
-      call print_requested(self%page, record, model)
+      call print_requested(self%page, tables, model)
       if (has_tables) then
          do i = 1, size(interfaces)
             call print_contact_table(self%page, interfaces(i), record%contacts(i), &

@@ -8,9 +8,9 @@ module listing_tables
    use listing_text, only: column, in_columns, page_type, table_heads, table_row, to_right
    use model, only: model_type, verify_type
    use quantity_types, only: of_contact_points, of_passes, quantity_type
-   use records, only: contact_record_type, increment_record_type
+   use records, only: contact_record_type
    use reported_quantities, only: quantities
-   use requested_tables, only: due_tables, requested_table_type, table_column_type
+   use requested_tables, only: requested_table_type, table_column_type
    use solution_report, only: iteration_record_type
    use text, only: or_blank, string_type, to_text
    use verification, only: node_words, outcome_type, uncertainty_words
@@ -119,15 +119,13 @@ contains
          node_words(outcome))
    end subroutine print_verdict
 
-   !> Prints the tables that are due at an increment.
-   subroutine print_requested(page, record, model)
-      type(page_type), intent(inout) :: page              !! of the listing
-      type(increment_record_type), intent(in) :: record
+   !> Prints tables of *NODE PRINT and *EL PRINT.
+   subroutine print_requested(page, tables, model)
+      type(page_type), intent(inout) :: page                 !! of the listing
+      type(requested_table_type), intent(in) :: tables(:)    !! those that are due
       type(model_type), intent(in) :: model
-      type(requested_table_type), allocatable :: tables(:)
       integer :: i
 
-      call due_tables(record, model, tables)
       do i = 1, size(tables)
          if (tables(i)%is_of_nodes) then
             call print_nodes(page, tables(i), model%mesh%node_number)

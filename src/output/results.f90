@@ -65,7 +65,7 @@ module results
       type(status_file_type) :: passes                        !! `.cvg`
       type(field_results_type) :: fields                      !! `/VTKHDF`
       type(restart_results_type) :: restarts                  !! `/restart`
-      type(history_results_type) :: histories                 !! of sets, in `/history`
+      type(history_results_type), public :: histories         !! of sets, in `/history`
       !> `/history`, `/convergence`, `/stability`, `/contact/<name>` of each interface, then, where
       !> uncertainties are estimated, `/uncertainty` and `/uncertainty/<name>` of each interface,
       !> each body and, with ERRORS=FULL, the increment
@@ -256,7 +256,7 @@ contains
       if (allocated(error)) call self%give_up()
    end subroutine go_on
 
-   !> Adds an accepted increment; publishes where that is due. The last increment of the last step
+   !> Adds an accepted increment, whose tables `histories` has; publishes where that is due. The last increment of the last step
    !> waits for `finish`.
    !> Error: status_internal, when a file cannot be written.
    subroutine append(self, record, model, interfaces, run, error, restart)
@@ -296,7 +296,6 @@ contains
          if (allocated(record%history_uncertainties)) call self%tables(size(self%tables))% &
             append(record%history_uncertainties)
       end if
-      call self%histories%append(record, model)
       if (fields_are_due(record, model)) call self%fields%append(record, interfaces)
       if (present(restart)) then
          rows = [self%accepted, self%fields%increments, (self%tables(i)%rows(), &

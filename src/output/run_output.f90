@@ -16,6 +16,7 @@ module run_output
    use model, only: model_type
    use progress, only: progress_type
    use records, only: increment_record_type
+   use requested_tables, only: due_tables, requested_table_type
    use result_rows, only: result_row_type
    use results, only: results_type
    use run_judgement, only: run_judgement_type
@@ -109,11 +110,13 @@ contains
       type(model_type), intent(in) :: model
       type(contact_points_type), intent(in) :: interfaces(:) !! contact points of every interface
       type(error_type), allocatable, intent(out) :: error !! what went wrong
+      type(requested_table_type), allocatable :: tables(:)
       type(state_table_type), allocatable :: restart
       real(dp) :: since
 
       since = wall_seconds()
-      call self%listing%add(record, model, interfaces, error)
+      call due_tables(record, model, tables)
+      call self%listing%add(record, model, interfaces, tables, error)
       call self%verifier%judge(record, model, interfaces, self%point_node)
       call self%judgement%take(record, model, interfaces)
       call self%progress%take(record)
@@ -122,8 +125,10 @@ contains
          call self%verifier%exchange(restart)
          call self%judgement%exchange(restart)
       end if
-      if (.not. allocated(error)) call self%results%append(record, model, interfaces, self%run, &
-         error, restart)
+      if (.not. allocated(error)) then
+         call self%results%histories%append(record, tables)
+         call self%results%append(record, model, interfaces, self%run, error, restart)
+      end if
       if (allocated(error)) call self%progress%clear()
       self%run%seconds_write = self%run%seconds_write + (wall_seconds() - since)
    end subroutine accept
