@@ -256,8 +256,8 @@ contains
       if (allocated(error)) call self%give_up()
    end subroutine go_on
 
-   !> Adds an accepted increment, whose tables `histories` has; publishes where that is due. The last increment of the last step
-   !> waits for `finish`.
+   !> Adds an accepted increment, whose tables `histories` has; publishes where that is due. The
+   !> last increment of the last step waits for `finish`.
    !> Error: status_internal, when a file cannot be written.
    subroutine append(self, record, model, interfaces, run, error, restart)
       class(results_type), intent(inout) :: self          !! the writer
