@@ -236,7 +236,7 @@ contains
             if (allocated(outcome%uncertainty)) call document%put(outcome%uncertainty, &
                'uncertainty')
             call document%close('}')
-            name = trim(check%quantity//' '//check%where)
+            name = trim(check%title()//' '//check%where)
             if (.not. check%at_last) name = name//' at '//to_text(check%when)
             if (outcome%reason /= '' .or. row%has(name)) cycle
             call row%put(name, outcome%found)

@@ -15,7 +15,8 @@ from test_sweep import AREA, EXPANSION, LENGTH, YOUNG
 FACTS = ["run", "status", "outcome", "reason", "increments", "iterations", "checks_passed",
          "checks_failed", "seconds", "cpu_seconds", "peak_megabytes"]
 CHECKS = ('*VERIFY, KIND=ANALYTIC, SOURCE="boundary"', "NT, 6, LAST, 300., 1.E-9", "NT, 6, 0.5, 150., 1.E-9",
-          "heat_rate, FACE, LAST, 1., 1.E9, ABS", "NT, 6, LAST, 999., 1.E-9")
+          "heat_rate, FACE, LAST, 1., 1.E9, ABS", "NT, 6, LAST, 999., 1.E-9",
+          "NT reaches 75., 6, LAST, 1., 1.E9, ABS")
 
 
 @pytest.fixture
@@ -71,7 +72,10 @@ def test_checks_are_columns_by_their_names(joint):
     assert len(set(named)) == len(named)
     assert (float(first["NT 6"]), float(second["NT 6"])) == (300.0, 600.0)
     assert (float(first["NT 6 at 0.5"]), float(second["NT 6 at 0.5"])) == (150.0, 300.0)
-    assert [(row["checks_passed"], row["checks_failed"]) for row in rows()] == [("3", "1"), ("1", "3")]
+    # Heated evenly from 0 in a time of 1.
+    reached = [float(row["NT reaches 75 6"]) for row in (first, second)]
+    assert reached == pytest.approx([0.25, 0.125], rel=1e-9)
+    assert [(row["checks_passed"], row["checks_failed"]) for row in rows()] == [("4", "1"), ("2", "3")]
     assert [row["status"] for row in rows()] == ["4", "4"]
 
 
