@@ -5,7 +5,8 @@ module batch
    use batch_table, only: print_batch, table_name, write_batch
    use clock, only: wall_seconds
    use command_line, only: command_type
-   use deck_files, only: base_name, batch_table_of, input_files_type, outputs_of, results_of, row_of
+   use deck_files, only: base_name, batch_table_of, input_files_type, outputs_of, results_of, &
+      row_file_of
    use deck_outcomes, only: deck_outcome_type
    use deck_reader, only: files_of_deck
    use deck_report, only: deck_report_type
@@ -341,7 +342,7 @@ contains
       integer :: i
 
       if (task%command%row == 0) return
-      if (has_come_to_its_end(outcome)) call outcome%row%read(row_of(task%path, task%command))
+      if (has_come_to_its_end(outcome)) call outcome%row%read(row_file_of(task%path, task%command))
       if (len(printed) == 0) return
       printed = new_line('a')//printed
       do i = size(task%command%settings), 1, -1
@@ -415,7 +416,7 @@ contains
       call run_deck(self%path, self%command, outcome)
       call outcome%print_failed_checks()
       if (has_come_to_its_end(outcome) .and. allocated(outcome%row%names)) then
-         call outcome%row%write(row_of(self%path, self%command), error)
+         call outcome%row%write(row_file_of(self%path, self%command), error)
          if (allocated(error)) then
             call print_error(self%path, error%message)
             outcome%report%status = error%status

@@ -1,7 +1,8 @@
 !> The accuracy that a deck or the command line asks for.
 module accuracy_targets
    use kinds, only: dp
-   use text, only: read_real
+   use spelling, only: nearest_known
+   use text, only: read_real, string_type
    implicit none
    private
    public :: accuracy_target_type, accuracy_request_type, read_request, short_name, whole_request
@@ -53,17 +54,21 @@ contains
 
    !> Reads a request such as 1%, of the usual quantities, or force=1%,heat=2%, each quantity once;
    !> unallocated where it is none.
-   pure subroutine read_request(words, targets, unknown)
+   pure subroutine read_request(words, targets, hint)
       character(*), intent(in) :: words
       type(accuracy_target_type), allocatable, intent(out) :: targets(:)
-      character(:), allocatable, intent(out) :: unknown   !! the first name of none; else empty
+      character(:), allocatable, intent(out) :: hint      !! what an unknown name may mean, or empty
       character(:), allocatable :: part, rest
+      type(string_type) :: known(size(short_names))
       real(dp) :: bound
       integer :: comma, equals, i, q
       logical :: valid
 
       allocate (targets(0))
-      unknown = ''
+      hint = ''
+      do i = 1, size(known)
+         known(i)%value = trim(short_names(i))
+      end do
       rest = words//','
       do while (len(rest) > 0)
          comma = index(rest, ',')
@@ -77,7 +82,7 @@ contains
             short_names == part(:max(equals - 1, 0)), .true., dim=1)
          if (equals == 0) valid = valid .and. size(targets) == 0 .and. len(rest) == 0
          if (equals > 0) valid = valid .and. q > 0
-         if (equals > 0 .and. q == 0) unknown = part(:equals - 1)
+         if (equals > 0 .and. q == 0) hint = nearest_known(part(:equals - 1), known)
          do i = 1, size(targets)
             if (q > 0) valid = valid .and. targets(i)%quantity /= quantities(q)
          end do

@@ -1,11 +1,11 @@
-!> Which faces of some master surfaces lie opposite a slave surface, and which faces touch others.
+!> Which faces of some master surfaces lie opposite a slave surface, and which faces lie on others.
 module facing_faces
    use element_kinds, only: element_corner_count, side_nodes
    use kinds, only: dp
    use mesh, only: mesh_type
    implicit none
    private
-   public :: find_facing, touches
+   public :: find_facing, lie_on
 
    !> Part of the largest coordinate by which two places in a deck are the same: six digits
    real(dp), parameter :: digits = 1.0e-6_dp
@@ -59,26 +59,26 @@ contains
    end subroutine find_facing
 
    !> Whether each face lies on some of the others, or overlaps their bodies, before any load.
-   pure function touches(mesh, faces, others)
+   pure function lie_on(mesh, faces, others)
       type(mesh_type), intent(in) :: mesh
       integer, intent(in) :: faces(:, :), others(:, :)   !! (2, n) as in a surface
-      logical :: touches(size(faces, 2))
+      logical :: lie_on(size(faces, 2))
       type(line_type) :: own(size(faces, 2)), opposite(size(others, 2))
       real(dp) :: gap, overlap
       integer :: i, k
 
       own = lines_of(mesh, faces)
       opposite = lines_of(mesh, others)
-      touches = .false.
+      lie_on = .false.
       do i = 1, size(own)
          do k = 1, size(opposite)
             call measure(own(i), opposite(k), gap, overlap)
-            touches(i) = overlap > little*own(i)%length .and. gap <= little*own(i)%length .and. &
+            lie_on(i) = overlap > little*own(i)%length .and. gap <= little*own(i)%length .and. &
                2.0_dp*gap > -own(i)%depth
-            if (touches(i)) exit
+            if (lie_on(i)) exit
          end do
       end do
-   end function touches
+   end function lie_on
 
    pure function lines_of(mesh, faces) result(lines)
       type(mesh_type), intent(in) :: mesh

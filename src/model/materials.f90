@@ -68,12 +68,12 @@ module materials
 
    !> A row of *LATENT HEAT: what melting takes up evenly from solidus to liquidus, beside the heat
    !> of the table.
-   type :: melting_type
+   type :: latent_heat_type
       real(dp) :: solidus = 0.0_dp                    !! [temperature]
       real(dp) :: liquidus = 0.0_dp                   !! above the solidus [temperature]
       real(dp) :: content = 0.0_dp                    !! [energy/volume]
       real(dp) :: capacity = 0.0_dp                   !! content over temperature between them
-   end type melting_type
+   end type latent_heat_type
 
    !> A material; the properties that it inherits are those of the first rows.
    type, extends(properties_type) :: material_type
@@ -82,7 +82,7 @@ module materials
       !> All properties as the deck gives them; unallocated for none
       type(property_type), allocatable :: given(:)
       type(heat_table_type) :: heat                   !! of density and specific heat
-      type(melting_type), allocatable :: melting(:)   !! *LATENT HEAT; unallocated for none
+      type(latent_heat_type), allocatable :: melting(:)   !! *LATENT HEAT; unallocated for none
       type(material_law_type) :: law                  !! beyond thermoelasticity
    contains
       procedure :: set_to

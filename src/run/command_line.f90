@@ -264,7 +264,7 @@ contains
       type(command_type), intent(inout) :: command
       character(*), intent(in) :: word, value
       type(error_type), allocatable, intent(out) :: error
-      character(:), allocatable :: unknown
+      character(:), allocatable :: hint
       integer :: status
       logical :: valid
 
@@ -276,12 +276,11 @@ contains
             'option --jobs needs a whole number of at least 1, not '//value)
       case ('--accuracy')
          command%accuracy = value
-         call read_request(value, command%targets, unknown)
+         call read_request(value, command%targets, hint)
          if (.not. allocated(command%targets)) call set_error(error, status_deck, &
             'option --accuracy needs a percentage above 0% and below 100%, such as 1%, or '// &
             'those of quantities, each once, such as force=1%,heat=2% (force, heat, pressure, '// &
-            'edge, shear, stick), not '//value//nearest_known(unknown, split_words( &
-            'force/heat/pressure/edge/shear/stick')))
+            'edge, shear, stick), not '//value//hint)
       case ('--errors')
          command%uncertainty = uncertainty_named(value)
          if (command%uncertainty < 0) call set_error(error, status_deck, &

@@ -8,7 +8,7 @@ module deck_files
    use text, only: append, string_type, to_text
    implicit none
    private
-   public :: input_files_type, base_name, results_of, row_of, outputs_of, batch_table_of
+   public :: input_files_type, base_name, results_of, row_file_of, outputs_of, batch_table_of
 
    !> The files of one deck or more.
    type :: input_files_type
@@ -33,13 +33,13 @@ contains
    end function results_of
 
    !> Path of the results of a run that is a row of a table.
-   pure function row_of(path, command) result(row)
+   pure function row_file_of(path, command) result(row)
       character(*), intent(in) :: path           !! the deck as given
       type(command_type), intent(in) :: command
       character(:), allocatable :: row           !! such as DIR/b-2.csv
 
       row = results_of(path, command)//'.csv'
-   end function row_of
+   end function row_file_of
 
    !> Path of the table that a batch writes.
    pure function batch_table_of(command) result(table)
@@ -66,7 +66,7 @@ contains
          outputs(i)%value = results_of(path, command)//trim(extensions(i))
       end do
       call append(outputs, batch_table_of(command))
-      if (command%row > 0) call append(outputs, row_of(path, command))
+      if (command%row > 0) call append(outputs, row_file_of(path, command))
    end function outputs_of
 
    !> Name of a deck's results: its file name without folder and extension, or stdin where it is

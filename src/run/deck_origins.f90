@@ -5,7 +5,7 @@ module deck_origins
    use card_parameters, only: take_parameter
    use cards, only: cards_type
    use command_line, only: command_type, settings_in_words
-   use deck_files, only: results_of, row_of
+   use deck_files, only: results_of, row_file_of
    use deck_reader, only: read_deck
    use deck_report, only: deck_report_type
    use deck_source, only: earlier_deck_type, place_type
@@ -51,7 +51,7 @@ contains
          source = results_of(path, command)//'.vtkhdf'
          inquire (file=source, exist=is_there)
          if (.not. is_there) source = ''
-         if (command%row > 0) inquire (file=row_of(path, command), exist=has_row)
+         if (command%row > 0) inquire (file=row_file_of(path, command), exist=has_row)
       end if
       if (reads .and. source == '') call report%error(place, &
          '*RESTART, READ goes on from a result: name it by --restart RESULT')

@@ -7,7 +7,7 @@ module deck_run
    use clock, only: wall_seconds
    use command_line, only: command_type, settings_in_words
    use contact_points, only: contact_points_type
-   use deck_files, only: input_files_type, outputs_of, results_of, row_of
+   use deck_files, only: input_files_type, outputs_of, results_of, row_file_of
    use deck_outcomes, only: deck_outcome_type
    use deck_preparation, only: prepare_deck, read_deck_type
    use errors, only: error_type, set_error, status_deck, status_interrupted, status_internal, &
@@ -228,8 +228,8 @@ contains
       call may_end(self, end_by_increments)
       call self%output%reserve(results_of(self%path, self%command), self%lock, error)
       ! Results of a row that an earlier run has left are none of what is solved now.
-      if (self%command%row > 0 .and. .not. allocated(error)) call remove_file(row_of(self%path, &
-         self%command))
+      if (self%command%row > 0 .and. .not. allocated(error)) call remove_file(row_file_of( &
+         self%path, self%command))
       call may_end(self, end_at_once)
    end subroutine reserve_files
 

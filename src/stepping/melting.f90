@@ -45,6 +45,7 @@ module melting
       procedure :: move
       procedure :: slopes
       procedure :: contents
+      procedure :: linear_excess
       procedure :: unresolved
       procedure :: find_solid_time
    end type melting_type
@@ -56,7 +57,7 @@ contains
       class(melting_type), intent(inout) :: self
       type(model_type), intent(in) :: model
       real(dp) :: lumped(nodes_per_element), volume(size(model%mesh%node_number))
-      integer :: e, i, m
+      integer :: e, i, m, n
 
       allocate (self%nodes(0))
       if (any(model%steps%is_transient)) then
@@ -66,11 +67,10 @@ contains
                volume = 0.0_dp
                do e = 1, size(mesh%element_kind)
                   if (sections(mesh%element_section(e))%material /= m) cycle
+                  n = element_node_count(mesh%element_kind(e))
                   lumped = lumped_volumes(mesh, sections, e)
-                  associate (n => element_node_count(mesh%element_kind(e)))
-                     associate (nodes => mesh%element_nodes(:n, e))
-                        volume(nodes) = volume(nodes) + lumped(:n)
-                     end associate
+                  associate (nodes => mesh%element_nodes(:n, e))
+                     volume(nodes) = volume(nodes) + lumped(:n)
                   end associate
                end do
                self%nodes = [self%nodes, pack([(melting_node_type(i, m, volume=volume(i)), i=1, &
@@ -101,7 +101,7 @@ contains
       class(melting_type), intent(inout) :: self
       type(model_type), intent(in) :: model
       real(dp), intent(in) :: temperature(:)                 !! (nodes)
-      real(dp) :: led, least
+      real(dp) :: content, least
       integer :: i, row
 
       self%changes_rows = .false.
@@ -109,14 +109,14 @@ contains
       do i = 1, size(self%nodes)
          associate (node => self%nodes(i))
             associate (material => model%materials(node%material), there => temperature(node%node))
-               led = led_content(model, node, there)
+               content = linear_content(model, node, there)
                least = rounding*maxval(material%melting%capacity)*abs(there)
-               if (abs(led - latent_content(material, there)) <= least) then
+               if (abs(content - latent_content(material, there)) <= least) then
                   node%at = there
                   cycle
                end if
                self%jumps = .true.
-               call melted_to(material, there, led, node%at, row)
+               call melted_to(material, there, content, node%at, row)
                self%changes_rows = self%changes_rows .or. row /= node%row
                node%row = row
             end associate
@@ -140,32 +140,42 @@ contains
       end do
    end function slopes
 
-   !> Latent heat on the nodes, or the same by content and slope at T'.
-   pure function contents(self, model, temperature, led)
+   !> Latent heat on the nodes.
+   pure function contents(self, model, temperature)
       class(melting_type), intent(in) :: self
       type(model_type), intent(in) :: model
       real(dp), intent(in) :: temperature(:)                 !! (nodes)
-      logical, intent(in) :: led                             !! whether by these
       real(dp) :: contents(size(temperature))                !! (nodes) [energy]
-      real(dp) :: content
       integer :: i
 
       contents = 0.0_dp
       do i = 1, size(self%nodes)
          associate (node => self%nodes(i))
-            associate (there => temperature(node%node))
-               if (led) then
-                  content = led_content(model, node, there)
-               else
-                  content = latent_content(model%materials(node%material), there)
-               end if
-            end associate
-            contents(node%node) = contents(node%node) + node%volume*content
+            contents(node%node) = contents(node%node) + node%volume*latent_content( &
+               model%materials(node%material), temperature(node%node))
          end associate
       end do
    end function contents
 
-   pure real(dp) function led_content(model, node, temperature) result(content)
+   !> What content and slope at T' give beyond the latent heat.
+   pure function linear_excess(self, model, temperature) result(excess)
+      class(melting_type), intent(in) :: self
+      type(model_type), intent(in) :: model
+      real(dp), intent(in) :: temperature(:)                 !! (nodes)
+      real(dp) :: excess(size(temperature))                  !! (nodes) [energy]
+      integer :: i
+
+      excess = 0.0_dp
+      do i = 1, size(self%nodes)
+         associate (node => self%nodes(i), there => temperature(self%nodes(i)%node))
+            excess(node%node) = excess(node%node) + node%volume*(linear_content(model, node, &
+               there) - latent_content(model%materials(node%material), there))
+         end associate
+      end do
+   end function linear_excess
+
+   !> Latent heat of a unit volume by content and slope at T'.
+   pure real(dp) function linear_content(model, node, temperature) result(content)
       type(model_type), intent(in) :: model
       type(melting_node_type), intent(in) :: node
       real(dp), intent(in) :: temperature
@@ -175,7 +185,7 @@ contains
          if (node%row > 0) content = content + material%melting(node%row)%capacity* &
             (temperature - node%at)
       end associate
-   end function led_content
+   end function linear_content
 
    !> Heat that has no meaning at a node, because temperatures within the interval are rounded.
    pure real(dp) function unresolved(self, model, temperature) result(heat)

@@ -326,8 +326,8 @@ contains
       real(dp), intent(in) :: temperature(:)                 ! (nodes)
 
       associate (n => size(temperature))
-         self%values(:n) = self%values(:n) + (self%melting%contents(model, temperature, .true.) - &
-            self%melting%contents(model, temperature, .false.))/self%stage%duration
+         self%values(:n) = self%values(:n) + self%melting%linear_excess(model, temperature)/ &
+            self%stage%duration
       end associate
    end subroutine lead_melting
 
@@ -572,8 +572,7 @@ contains
       do i = 1, size(self%elements)
          call self%contents%add_contents(model%mesh, self%elements(i), temperature, contents)
       end do
-      if (self%melting%acts) contents = contents + self%melting%contents(model, &
-         temperature, .false.)
+      if (self%melting%acts) contents = contents + self%melting%contents(model, temperature)
    end function true_contents
 
    !> Largest heat and forces of a solution, by which what is left over is small; at least those of

@@ -6,7 +6,7 @@ module heat_checks
    use deck_context, only: deck_type
    use equations, only: facing_nodes
    use deck_source, only: place_type
-   use facing_faces, only: touches
+   use facing_faces, only: lie_on
    use kinds, only: dp
    use load_requests, only: request_type
    use materials, only: follows_temperature, in_plane, of_expansion
@@ -86,7 +86,7 @@ contains
             end associate
          end do
          last = 0
-         if (any(films > 0)) last = maxval(merge(films, 0, touches(deck%mesh, faces, opposite)))
+         if (any(films > 0)) last = maxval(merge(films, 0, lie_on(deck%mesh, faces, opposite)))
       end function film_between
    end subroutine check_films
 
