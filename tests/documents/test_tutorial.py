@@ -74,8 +74,6 @@ def test_a_page_runs_as_it_is_written(page, tmp_path):
     assert follow(page, tmp_path) >= 5
 
 
-@pytest.mark.skipif("run_many" not in (PACKAGES / "thercon" / "__init__.py").read_text(),
-                    reason="the package cannot run decks")
 def test_the_readme_runs_as_it_is_written(tmp_path):
     follow(README, tmp_path)
 
