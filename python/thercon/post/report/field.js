@@ -117,7 +117,7 @@ function areaOf(group, e, places) {
    return 0.5 * Math.abs(twice);
 }
 // The range of values; where half a percent of the area at either end extends it far, without these.
-function rangeOfMost(values) {
+function rangeOfMost(values, peak) {
    const whole = values.reduce((sum, [, area]) => sum + area, 0);
    let before = 0, low, high;
    for (const [value, area] of values) {
@@ -125,27 +125,28 @@ function rangeOfMost(values) {
       if (low === undefined && before >= 0.005 * whole) low = value;
       if (high === undefined && before >= 0.995 * whole) high = value;
    }
-   const [least, most] = [values[0][0], values.at(-1)[0]];
-   return most - least > 1.5 * (high - low) ? [low, high] : [least, most];
+   const ends = [values[0][0], values.at(-1)[0]];
+   return high - low > UNIFORM * peak && ends[1] - ends[0] > 1.5 * (high - low) ? [low, high] : ends;
 }
 // One scale for all bodies; where it is asked for, those whose ranges differ tenfold have their own.
 function scalesOf(quantity, steps, places, box) {
    const peak = quantity.values.reduce((most, v) => Number.isFinite(v) ? Math.max(most, Math.abs(v)) : most, 0);
-   const ranges = bodies.map(body => {
-      const values = valuesOf(quantity, body, steps, places, box);
-      if (!values.length) return {body};
-      const ends = [values[0][0], values.at(-1)[0]];
-      const [low, high] = quantity.key === 'temperature' ? ends : rangeOfMost(values);
-      return {body, low, high, ends};
-   }).filter(range => range.low !== undefined).sort((a, b) => (b.high - b.low) - (a.high - a.low));
    const found = [];
-   for (const range of ranges) {
-      const extent = range.high - range.low, last = found.at(-1);
+   const ranges = bodies.map(body => ({body, values: valuesOf(quantity, body, steps, places, box)}))
+      .filter(({values}) => values.length)
+      .map(range => ({...range, extent: range.values.at(-1)[0] - range.values[0][0]}))
+      .sort((a, b) => b.extent - a.extent);
+   for (const {body, values, extent} of ranges) {
+      const last = found.at(-1);
       if (last && (!$('apart').checked || extent > 0.1 * last.extent || extent <= UNIFORM * peak)) {
-         last.low = Math.min(last.low, range.low); last.high = Math.max(last.high, range.high);
-         last.ends = [Math.min(last.ends[0], range.ends[0]), Math.max(last.ends[1], range.ends[1])];
-         last.bodies.push(range.body);
-      } else found.push({low: range.low, high: range.high, ends: range.ends, extent, bodies: [range.body]});
+         last.bodies.push(body);
+         last.values = last.values.concat(values);
+      } else found.push({bodies: [body], values, extent});
+   }
+   for (const scale of found) {
+      scale.values.sort((a, b) => a[0] - b[0]);
+      scale.ends = [scale.values[0][0], scale.values.at(-1)[0]];
+      [scale.low, scale.high] = quantity.key === 'temperature' ? scale.ends : rangeOfMost(scale.values, peak);
    }
    const [low, high] = ['low', 'high'].map(id => $(id).value === '' ? NaN : Number($(id).value));
    for (const scale of found) {

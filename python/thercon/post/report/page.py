@@ -132,8 +132,8 @@ FIELDS = """<form class="choice" aria-label="What the field shows">
 <label>Show <select id="region"><option value="model">whole model</option>
 <option value="near">contact</option></select></label>
 <label>Displacements × <input type="number" id="scale" min="0" step="any" value="1"></label>
-<label>Colours from <input type="number" id="low" step="any"></label>
-<label>to <input type="number" id="high" step="any"></label>
+<span><label>Colours from <input type="number" id="low" step="any"></label>
+<label>to <input type="number" id="high" step="any"></label></span>
 <label><input type="checkbox" id="fixed"> same colours at all loads</label>
 <label><input type="checkbox" id="apart"> colours for each body</label>
 </form>
