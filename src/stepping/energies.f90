@@ -6,7 +6,7 @@ module energies
    use friction_heating, only: slips
    use kinds, only: dp
    use material_laws, only: law_points_type
-   use material_points, only: point_history_type
+   use point_histories, only: point_history_type
    use model, only: model_type
    use point_fields, only: point_fields_type
    use point_rules, only: most => most_points_of_rule

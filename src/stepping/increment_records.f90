@@ -18,7 +18,8 @@ module increment_records
    use model, only: model_type
    use material_laws, only: law_points_type
    use materials, only: material_axes, melts, varies
-   use material_points, only: material_points_type, point_history_type
+   use material_points, only: material_points_type
+   use point_histories, only: point_history_type
    use melting, only: solid_fractions
    use point_rules, only: most => most_points_of_rule
    use point_properties, only: along_axes

@@ -26,7 +26,8 @@ module operator_corrections
    use mesh, only: mesh_type, nodes_per_element
    use model, only: model_type
    use material_laws, only: law_points_type
-   use material_points, only: elastic_part, material_points_type, point_history_type
+   use material_points, only: elastic_part, material_points_type
+   use point_histories, only: point_history_type
    use melting, only: melting_type
    use point_rules, only: integration_rules, load_rules, most => most_points_of_rule
    use reduced_bodies, only: reduced_bodies_type

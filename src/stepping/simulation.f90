@@ -15,7 +15,7 @@ module simulation
    use kinds, only: dp
    use load_histories, only: step_clock_type
    use loads, only: loads_type
-   use material_points, only: history_count
+   use point_histories, only: history_count
    use model, only: model_type
    use operator_corrections, only: corrections_type
    use point_fields, only: point_fields_type
