@@ -30,20 +30,15 @@ within its tolerance.
 
 `./setup.sh verify` runs all meshes of all problems (some minutes), and writes this page and
 `build/documents/verification.md`, which has every problem in full: data, source, tolerance and its
-reason, and each value on each mesh. Every deck carries its reference values and tolerances as
-`*VERIFY` cards, so the verdicts are the program's own. The tests `verification_*` run the coarsest
-meshes.
-
-How to read the tables:
+reason, and each value on each mesh. The verdicts are the program's own, by `*VERIFY` cards.
 
 - `finest` is the finest mesh; a blank means that a problem has variants instead of meshes.
-- `largest error` is that of all values on the finest mesh, relative to the reference; `abs.` marks
-  errors in the unit of the value, for references of 0 and edges of zones.
+- `largest error` is that of all values on it, relative to the reference; `abs.` marks errors in the
+  unit of the value, for references of 0 and edges of zones.
 - `of allowed` is the largest ratio of an error to its tolerance. Tolerances come from theory, from
   the digits of the source or from the order of the elements, never from the program's own results.
-- `order` is log2 of the ratio of the errors of that value on the two finest meshes. It is left out
-  where errors are rounding, for edges of zones, whose errors change sign as an edge moves between
-  two nodes, and for forces fixed by equilibrium.
+- `order` is log2 of the ratio of the errors of that value on the two finest meshes, left out where
+  errors are rounding or change their sign.
 """
 RESULTANTS = ("normal_force", "shear_force", "heat_in", "heat_out")
 ROUNDING = 1e-9  # errors below it have no order
