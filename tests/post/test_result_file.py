@@ -285,6 +285,7 @@ def every_dataset(file):
 
 def test_every_dataset_says_what_it_is_and_the_document_says_the_same(results):
     document = (DOCS / "results.md").read_text()
+    (field_of_faces,) = re.findall(r"^\| `contact_<quantity>` .*", document, re.MULTILINE)
     for name in ("cylinder.vtkhdf", "cylinder.contact.vtkhdf"):
         with h5py.File(results / name) as file:
             for path, dataset in every_dataset(file).items():
@@ -314,6 +315,11 @@ def test_every_dataset_says_what_it_is_and_the_document_says_the_same(results):
                     continue
                 if (group, name) == ("VTKHDF/PointData", "cylinder.contact.vtkhdf"):
                     assert f"| `{last}` |" in document
+                    continue
+                if group == "VTKHDF/PointData" and last.startswith("contact_"):
+                    of_points = file[f"contact/FACE/{last.removeprefix('contact_')}"]
+                    assert said == of_points.attrs["description"] + "; on both faces, else NaN"
+                    assert f"`{last.removeprefix('contact_')}`" in field_of_faces
                     continue
                 assert re.search(rf"^\| `{last}` .*\| {re.escape(said)}[ |(]", document,
                                  re.MULTILINE), path
