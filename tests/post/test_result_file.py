@@ -580,16 +580,6 @@ def test_vtk_reads_the_contact_faces_as_lines_with_their_quantities(results, sto
         np.testing.assert_array_equal(values, expected if expected.ndim == 1 else expected[step])
 
 
-def test_the_recipe_of_the_document_exports_the_pressure(results, stored, monkeypatch):
-    monkeypatch.chdir(results)
-    text = of_the_file((DOCS / "results.md").read_text())
-    (recipe,) = re.findall(r"```python\n(.*?)```", text, re.DOTALL)
-    exec(compile(recipe, "results.md", "exec"), {})
-    table = np.loadtxt("pressure.csv", delimiter=",")
-    np.testing.assert_allclose(table[:, 0], stored["contact/FACE/s"][()], rtol=1e-12)
-    np.testing.assert_allclose(table[:, 1], stored["contact/FACE/pressure"][-1], rtol=1e-12)
-
-
 def test_principal_radial_and_hoop_stresses_are_those_of_the_tensor(stored):
     data = stored["VTKHDF/PointData"]
     xx, yy, zz, xy = data["stress"][-NODES:].T
