@@ -255,7 +255,7 @@ def brief(theme, parts):
     """Return the parts of a section of the document: a row for each case, and the picture."""
     tables = {part.title: part for part in parts if isinstance(part, Table)}
     rows = [short_row(case, tables[case.title]) for case in theme.cases()]
-    return [Table(theme.TITLE, SHORT_HEAD, rows, heading=False),
+    return [Table(theme.TITLE, SHORT_HEAD, together(rows, getattr(theme, "TOGETHER", ())), heading=False),
             *(part for part in parts if isinstance(part, Picture))]
 
 
@@ -276,6 +276,23 @@ def short_row(case, table):
     most = max(relative or absolute, key=float, default="") + " abs." * bool(absolute)
     return [case.title, case.cited(), finest, most, f"{share:.1g}" if shares else "", order,
             verdict("FAIL" not in (r["verdict"] for r in rows))]
+
+
+def together(rows, problems):
+    """Return the rows with those of the variants of these problems, "problem, variant", as one: the
+    largest error, and the largest share of a tolerance with its order."""
+    found = []
+    for row in rows:
+        problem, _, variant = row[0].partition(", ")
+        if problem not in problems or not found or not found[-1][0].startswith(f"{problem}, "):
+            found.append(row)
+            continue
+        last = found[-1]
+        _, _, _, error, share, order, _ = max(last, row, key=lambda one: float(one[4]))
+        error = max(last[3], row[3], key=lambda one: float(one.removesuffix(" abs.")))
+        found[-1] = [f"{last[0]}; {variant}", *row[1:3], error, share, order,
+                     verdict("FAIL" not in (last[6], row[6]))]
+    return found
 
 
 def check_short(theme, folder):
