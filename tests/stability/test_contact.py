@@ -19,8 +19,7 @@ TITLE = "Contact"
 TEXT = """
 Contact states are found for coefficients of friction up to 10: no run of this section ends early,
 none needs a cut-back, and none of the 16,169 increments violates the conditions of contact by more
-than 1e-10. Every run makes this check: gaps and tractions are computed again from the displacements
-of whole bodies, and the listing prints the largest violation of (1.6).
+than 1e-10. [Every run makes this check](theory.md#7-checks-on-every-increment).
 
 - Beyond the friction at which uniqueness ends, the state of the increment before is kept as long as
   it is valid, and the run reports other states where it proves them.

@@ -28,9 +28,8 @@ Which states last, and how fast the others are left: figures of [\\*STABILITY](d
 which disturbs a state a little and finds how heat, expansion, contact and conductance respond. "Growing"
 is the number of motions that grow; the rate is that of the fastest, negative where all decay.
 
-- Rates and periods agree with dense eigenvalues and closed forms to 1e-3, the critical speed of a
-  sliding face to 2e-5, and runs in time with both. No number of growing motions is wrong, at 796
-  states of two joints, either.
+- Rates and periods agree with dense eigenvalues, closed forms and runs in time to 1e-3. No number
+  of growing motions is wrong, at 796 states of two joints, either.
 - The coupling gain U' tells only a part. Of several states those with U' > 1 are unstable, but a
   state may be the only one, with U' = 0, and still oscillate with growing amplitude; one with
   U' = -1000 may last.
