@@ -50,6 +50,23 @@ def test_no_cell_and_no_line_is_wider_than_a_page(path):
     assert not list(wide(path.read_text()))
 
 
+def headless(text):
+    """Return the first rows of tables that begin without a head."""
+    blocks = re.split(r"\n{2,}", "\n".join(prose(text)))
+    tables = [re.sub(r"^(?!\|).*\n", "", block, flags=re.M) for block in blocks if "\n|" in f"\n{block}"]
+    return [table for table in tables if not re.match(r"\|.*\n\|[-|]+\|(\n|$)", table)]
+
+
+@pytest.mark.parametrize("path", DOCUMENTS, ids=named)
+def test_every_table_has_a_head(path):
+    assert not headless(path.read_text())
+
+
+def test_tables_that_a_line_divides_are_found():
+    assert headless("| a |\n|---|\n| b |\n\n| c |\n") == ["| c |"]
+    assert not headless("## \\*CARD\n| a |\n|---|\n| b |\n\nText\n")
+
+
 def test_wide_cells_and_lines_are_found():
     assert list(wide(f"| a | {'b' * 201} |\n{'word ' * 21}\n")) == [f" {'b' * 201} ", "word " * 21]
     assert not list(wide(f"| {'a' * 150} | {'b' * 150} |\n```\n{'c' * 120}\n```\n"))
