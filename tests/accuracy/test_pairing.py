@@ -24,8 +24,7 @@ times the CPU seconds. Use `PAIRING=SURFACES` on the faces of a crack whose forc
 | cracked plate | force and heat less than a tenth: node pairs leave out the share of the tip |
 
 Where the edge of contact lies inside a side, single pressures of mortar points alternate about the
-true ones and fade away from the edge: those of Hertz, with 8 sides in contact, by -13, 10, -3, 2
-and -0.4 % of the largest one. Forces and the largest pressure hardly notice.
+true ones, by up to 13 % of the largest one next to the edge of Hertz's contact with 8 sides.
 """
 DETAILS = """
 The errors below are magnitudes, in per cent of converged values (`tests/accuracy/converged.csv`), at the end of the load,

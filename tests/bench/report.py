@@ -27,11 +27,10 @@ The cost of a run, its growth with the mesh, and where the time goes. In short:
 - Contact iterations factor only the columns of the contact again: below 2 % of the operations of a
   full factorisation.
 
-**Processors newer than OpenBLAS.** On a processor that it does not know, OpenBLAS computes as for one
-without AVX. `thercon --version` then ends with `OpenBLAS for Prescott`. Large models take up to twice as
-long: on an Intel Xeon of 2023 with OpenBLAS 0.3.21, four uniform refinements of the cylinder took 21
-instead of 17 s, and a pellet with 3000 elements and 5 interfaces 16 instead of 9 s. The variable
-`OPENBLAS_CORETYPE` of the environment names a known processor: `SKYLAKEX` has AVX-512, `HASWELL` AVX2.
+**Processors newer than OpenBLAS.** On a processor that it does not know, OpenBLAS computes as for
+one without AVX, and `thercon --version` ends with `OpenBLAS for Prescott`. Large models then take
+up to twice as long. The variable `OPENBLAS_CORETYPE` of the environment names a known processor:
+`SKYLAKEX` has AVX-512, `HASWELL` AVX2.
 
 `./setup.sh bench performance` writes this page from runs, and every table to
 `build/documents/performance.md`; with the names of sections (`skyline`, `tail`, `levels`, `rods`,

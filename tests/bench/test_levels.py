@@ -16,13 +16,9 @@ TITLE = "Refined meshes"
 TEXT = """
 The published cylinder, 45 increments, refined uniformly: each level has four times the elements and
 twice the contact points. Errors are not estimated, fields are those of the last increment only.
-CPU seconds are those of the whole process, user and system. They are divided among the stages as
-elapsed time is, so other processes blur the stages. Short runs are medians of three. Without
-`*SOLVER` the solver is SKYLINE below 5000 displacements, MUMPS from there on: the crossing lies
-between the first and the second refinement. *Reducing* is the work
-that the interface needs at least once: factoring the thermal and the mechanical matrix, each with
-its Schur complement on the contact points, and what a unit temperature jump at each contact point
-makes of the forces there. SKYLINE solves for each jump; MUMPS eliminates both fields together.
+Without `*SOLVER` the solver is SKYLINE below 5000 displacements, MUMPS from there on. *Reducing* is
+factoring the thermal and the mechanical matrix, each with its Schur complement on the contact
+points, and what a unit temperature jump at each contact point makes of the forces there.
 """
 IN_DOCUMENT = ["Seconds by stage", "What limits one machine"]
 STAGES = ("read", "assemble", "reduce", "iterate", "recover", "write")

@@ -12,10 +12,8 @@ from instructions import SOURCES, profile
 TITLE = "The published case"
 TEXT = """
 `input/cylinder/cylinder.inp` as it is delivered: 45 increments, all fields, tables and estimates of
-errors. Instructions are those of callgrind on the program as users have it, and the same from run
-to run, but for writing: how often results are published goes by elapsed time, and a busy machine
-publishes more often. Estimates of errors include the increments that they solve themselves;
-[accuracy.md](accuracy.md) has their cost relative to the rest of a run.
+errors. Instructions are those of callgrind, and the same from run to run, but for writing, which goes by
+elapsed time. Estimates of errors include the increments that they solve themselves.
 """
 OUTPUT = {path.stem for path in (SOURCES / "output").glob("*.f90")}
 ESTIMATES = {path.stem for path in (SOURCES / "accuracy").glob("*.f90")}

@@ -13,7 +13,7 @@ from runs import measured
 
 TITLE = "Many interfaces"
 TEXT = """
-Rods of pellets in a tube ([design.md](design.md#many-interfaces)), friction and gas between pellets
+Rods of pellets in a tube, friction and gas between pellets
 and tube and from pellet to pellet, four increments, with `ERRORS=NO`. The exponent is that of the
 time with the length of the rod, from the row before. A full matrix of all contact unknowns is what
 one interface has; from 200 contact points between more than two bodies on the tail is sparse.

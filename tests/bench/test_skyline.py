@@ -9,9 +9,10 @@ from document import Table
 
 TITLE = "Skyline and LAPACK"
 TEXT = """
-The skyline factors uniform bands of 12,000 equations, and so does LAPACK's `dpbtrf`, in one process
-on one thread; each time is the best of three. The pivots of both agree to 1e-10.
+The skyline factors uniform bands of 12,000 equations, 100 to 800 wide, in 1.15 to 1.17 times the
+time of LAPACK's `dpbtrf`, and the pivots of both agree to 1e-10.
 """
+IN_DOCUMENT = []
 ROOT = Path(__file__).resolve().parents[2]
 SOURCES = ("src/core/kinds.f90", "src/linalg/blas_lapack.f90", "src/linalg/column_panels.f90",
            "tests/bench/skyline.f90")

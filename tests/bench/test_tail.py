@@ -11,10 +11,8 @@ TITLE = "Tail and full factorisation"
 TEXT = """
 Contact conductance changes the thermal matrix only in its last columns, the tail, which hold the
 temperature jumps of the contact points. Only the part of the tail from the first changed column on
-is factored again; *in full* is the cost of factoring the whole matrix each time. The listing
-gives these numbers for each increment ("refactored"); here they are summed over the published
-cylinder. An operation is a multiplication or an addition. MUMPS counts those of nested dissection,
-so fewer in full; the tail is dense with both.
+is factored again; *in full* is the cost of factoring the whole matrix each time. The listing gives
+these numbers for each increment ("refactored"); here they are summed over the published cylinder.
 """
 SAID = re.compile(r"refactored (\d+) of (\d+) columns .*?, (\d+) of (\d+) flops")
 

@@ -31,7 +31,8 @@ from thercon.post.comparison.numbers import fortran_number
 from thercon.post.comparison.report import percent
 from thercon.post.comparison.template import read_template
 
-DOCUMENT = Path(__file__).resolve().parents[2] / "docs" / "compare.md"
+ROOT = Path(__file__).resolve().parents[2]
+DOCUMENT, EXAMPLE = ROOT / "docs" / "compare.md", ROOT / "input" / "compare"
 
 
 @pytest.mark.parametrize(
@@ -179,11 +180,12 @@ def folder(tmp_path_factory):
     return folder
 
 
-def test_the_print_file_of_the_document_is_read_with_its_template(compare, folder, tmp_path):
-    blocks = re.findall(r"```(\w+)\n(.*?)```", DOCUMENT.read_text(encoding="utf-8"), re.S)
-    text, form = (
-        next(block for kind, block in blocks if kind == name) for name in ("text", "toml")
-    )
+def test_a_print_file_is_read_with_the_template_of_the_document(compare, folder, tmp_path):
+    text, form = ((EXAMPLE / f"kontakt.{kind}").read_text() for kind in ("lst", "toml"))
+    document = DOCUMENT.read_text(encoding="utf-8")
+    assert f"```toml\n{form}```" in document
+    (shown,) = re.findall(r"```text\n(.*?)```", document, re.S)
+    assert {line for line in shown.splitlines() if line.strip() != "..."} <= set(text.splitlines())
     (tmp_path / "kontakt.lst").write_text(text)
     (tmp_path / "kontakt.toml").write_text(form)
     arguments = (tmp_path / "kontakt.lst", "--template", tmp_path / "kontakt.toml")

@@ -20,9 +20,8 @@ NEWTON, the default, finds a solution in every case: rods whose solutions are kn
 with 60 digits, 10,000 random rods whose conductance jumps where they touch, and all increments of
 the published cylinder and its strongly coupled twin on three meshes. It takes three passes
 (iterations) an increment on the cylinder, up to 22 on the twin. The other methods fail in 5 to 13 %
-of the cases, where the coupling is strong; they say so with exit status 2 and name the increment.
-Where methods find a solution, all find the same to 1e-8, also from other starts (FROM=OPEN,
-FROM=CLOSED).
+of the cases, where the coupling is strong. Where methods find a solution, all find the same to
+1e-8, also from other starts (FROM=OPEN, FROM=CLOSED).
 """
 DETAILS = f"""
 Every method solves omega = U(omega); "relaxed 0.5" is (4.2) with the constant g = 0.5. Only NEWTON must not give up; the others may, with a message, after {MAXITER} passes (iterations) on the rods and 50 on the

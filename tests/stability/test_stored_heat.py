@@ -29,9 +29,10 @@ increments. Temperatures in three- and four-node elements never fall below the r
 
 Of three steady states of two rods a run ends in a stable one, if its increments resolve the growth
 of the unstable one: IMPLICIT stays there if rate times increment is above 2, L-STABLE above 11.7,
-with a warning. The rates at which temperatures leave such a state or return to it:
+with a warning. The rates at which temperatures leave such a state or return to it are those of
+[closed forms](#three-states-of-two-rods) to 1e-3.
 """
-IN_DOCUMENT = ["Rates of the three steady states"]
+IN_DOCUMENT = []
 
 # Orders in time
 

@@ -24,7 +24,7 @@ CRANK-NICOLSON keeps an initial imbalance, and the run warns of it.
 
 Errors at the end of the loading; the order is that from 40 to 80 increments.
 """
-IN_DOCUMENT = ["Friction: one contact point in closed form", "Schemes: error of the gap"]
+IN_DOCUMENT = ["Schemes: error of the gap"]
 COUNTS = [5, 10, 20, 40, 80]
 ROUNDING = 1e-9
 

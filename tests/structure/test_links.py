@@ -6,7 +6,7 @@ from pathlib import Path
 import pytest
 
 ROOT = Path(__file__).resolve().parents[2]
-DOCUMENTS = [path for pattern in ("*.md", "docs/**/*.md", "post/*.md", "src/*/*.md", "input/**/*.md")
+DOCUMENTS = [path for pattern in ("*.md", "docs/**/*.md", "post/*.md", "src/**/*.md", "input/**/*.md")
              for path in sorted(ROOT.glob(pattern))]
 
 

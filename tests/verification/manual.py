@@ -30,20 +30,15 @@ within its tolerance.
 
 `./setup.sh verify` runs all meshes of all problems (some minutes), and writes this page and
 `build/documents/verification.md`, which has every problem in full: data, source, tolerance and its
-reason, and each value on each mesh. Every deck carries its reference values and tolerances as
-`*VERIFY` cards, so the verdicts are the program's own. The tests `verification_*` run the coarsest
-meshes.
-
-How to read the tables:
+reason, and each value on each mesh. The verdicts are the program's own, by `*VERIFY` cards.
 
 - `finest` is the finest mesh; a blank means that a problem has variants instead of meshes.
-- `largest error` is that of all values on the finest mesh, relative to the reference; `abs.` marks
-  errors in the unit of the value, for references of 0 and edges of zones.
+- `largest error` is that of all values on it, relative to the reference; `abs.` marks errors in the
+  unit of the value, for references of 0 and edges of zones.
 - `of allowed` is the largest ratio of an error to its tolerance. Tolerances come from theory, from
   the digits of the source or from the order of the elements, never from the program's own results.
-- `order` is log2 of the ratio of the errors of that value on the two finest meshes. It is left out
-  where errors are rounding, for edges of zones, whose errors change sign as an edge moves between
-  two nodes, and for forces fixed by equilibrium.
+- `order` is log2 of the ratio of the errors of that value on the two finest meshes, left out where
+  errors are rounding or change their sign.
 """
 RESULTANTS = ("normal_force", "shear_force", "heat_in", "heat_out")
 ROUNDING = 1e-9  # errors below it have no order
@@ -260,7 +255,7 @@ def brief(theme, parts):
     """Return the parts of a section of the document: a row for each case, and the picture."""
     tables = {part.title: part for part in parts if isinstance(part, Table)}
     rows = [short_row(case, tables[case.title]) for case in theme.cases()]
-    return [Table(theme.TITLE, SHORT_HEAD, rows, heading=False),
+    return [Table(theme.TITLE, SHORT_HEAD, together(rows, getattr(theme, "TOGETHER", ())), heading=False),
             *(part for part in parts if isinstance(part, Picture))]
 
 
@@ -281,6 +276,23 @@ def short_row(case, table):
     most = max(relative or absolute, key=float, default="") + " abs." * bool(absolute)
     return [case.title, case.cited(), finest, most, f"{share:.1g}" if shares else "", order,
             verdict("FAIL" not in (r["verdict"] for r in rows))]
+
+
+def together(rows, problems):
+    """Return the rows with those of the variants of these problems, "problem, variant", as one: the
+    largest error, and the largest share of a tolerance with its order."""
+    found = []
+    for row in rows:
+        problem, _, variant = row[0].partition(", ")
+        if problem not in problems or not found or not found[-1][0].startswith(f"{problem}, "):
+            found.append(row)
+            continue
+        last = found[-1]
+        _, _, _, error, share, order, _ = max(last, row, key=lambda one: float(one[4]))
+        error = max(last[3], row[3], key=lambda one: float(one.removesuffix(" abs.")))
+        found[-1] = [f"{last[0]}; {variant}", *row[1:3], error, share, order,
+                     verdict("FAIL" not in (last[6], row[6]))]
+    return found
 
 
 def check_short(theme, folder):

@@ -21,6 +21,7 @@ alpha = 1.2e-5/K, rho c_p = 3.588 mJ/(mm3 K), k = 50 mW/(mm K) and T0 = 293 K. T
 and strains in a column that cannot widen is delta = beta^2 T0/(M C_e), 0.0117 in steel. No material
 has 0.5 or 2; those that stand for it here have E = 1, nu = 0.3, k = 1, alpha = 1, T0 = 1, and the
 heat capacity follows from delta."""
+TOGETHER = ("A column that settles",)
 PICTURE = "dilatation"
 CAPTION = "Errors of columns and of a strip in bending, and the damping of the strip"
 ANALYSIS = "*COUPLED TEMPERATURE-DISPLACEMENT, DIRECT, DILATATION=YES"

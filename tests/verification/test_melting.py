@@ -15,6 +15,7 @@ to 0.5 % of their place, half of that on each finer mesh; stress and plastic str
 rounding."""
 DETAILS = """A front is known by the time at which the last point that melts is solid. Every row halves the
 elements, the increments and the interval of the row before."""
+TOGETHER = ("Stefan's front",)
 PICTURE = "melting"
 CAPTION = "Errors of fronts over meshes, increments and intervals"
 FINENESS = [1, 2, 4]

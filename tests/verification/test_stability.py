@@ -17,6 +17,8 @@ TITLE = "Stability in time"
 TEXT = r"""The number of growing motions that \*STABILITY reports is right in every case; rates and
 periods are met to four digits."""
 DETAILS = """Every row halves the elements of the row before."""
+TOGETHER = ("Rods", "Rods with one solution", "Barber's rod",
+            "Bar on a sliding wall", "Burton's half-plane")
 PICTURE = "stability"
 CAPTION = "Errors of rates and periods over meshes"
 FINENESS = [1, 2, 4]

@@ -26,6 +26,7 @@ The scheme replaces exp(z) by exp(z) + 0.0404 z^3 for one increment, so that at 
 at the rate r has lost 0.0404 (r dt)^2 (r t) exp(-r t) of its start, at most 0.054 (dt/t)^2, where
 r t = 3. The modes of a half-space after a jump of its face add up to at most 0.026 (dt/t)^2. The
 elements, of eight nodes, have the rest."""
+TOGETHER = ("Rod that grows until it touches",)
 PICTURE = "transients"
 CAPTION = "Errors of transients over meshes and increments"
 FINENESS = [1, 2, 4]
