@@ -23,7 +23,7 @@ def test_parameter_is_a_number_a_name_or_a_part(tmp_path):
 
 def test_parameter_is_arithmetic(tmp_path):
     """Of earlier parameters, text among them; it follows one that the command line overrides."""
-    deck = block("*PARAMETER", "base = 2., body = BODY, where = body, file = ../a-1.inc",
+    deck = block("*PARAMETER", "base = 2., solid = BODY, where = solid, file = ../a-1.inc",
                  "load = (sqrt(base*8) + 1)**2/5 - 2**-1*0, levels = 4/2 - 1",
                  "*REFINE, LEVELS=<levels>", *static("*DSLOAD", "<where>.TOP, P, <load>"))
     result = judge(tmp_path, deck, stressed([0.0, -5.0, 0.0]))

@@ -70,7 +70,7 @@ contains
       type(deck_report_type), intent(inout) :: report      !! receives errors
       character(:), allocatable :: name, value
       type(field_type) :: field
-      integer :: equals, first, setting
+      integer :: earlier, equals, first, setting
 
       field = given
       call self%substitute(field, report)
@@ -91,12 +91,13 @@ contains
          return
       end if
       setting = self%settings%find(name)
+      earlier = self%names%find(value)
       if (setting > 0) then
          call add_note(notes, 'parameter '//trim(field%text(:equals - 1))//' = '// &
             self%setting_values(setting)%value//' by --set, in place of '//without_quotes(value))
          value = self%setting_values(setting)%value
-      else if (self%names%find(value) > 0) then
-         value = self%values(self%names%find(value))%value
+      else if (earlier > 0) then
+         value = self%values(earlier)%value
       else if (is_arithmetic(value, self%names)) then
          ! Names that were replaced leave no columns to point at.
          if (field%text == given%text) field%place%column = field%place%column + first
