@@ -28,7 +28,7 @@ contains
          if (cycle%steps == 0 .or. .not. record%last_of_step) return
          if (allocated(run%cycle_before)) then
             change = change_between(run, model, cycle, run%cycle_before)
-            record%cycle = words_of(run, model, cycle, run%cycle_before)
+            record%cycle = words_of(run, model, cycle, run%cycle_before, change)
             if (change <= cycle%tolerance) then
                record%left_out = cycle%last - record%step
                if (record%left_out > 0) call append(record%notes, 'this cycle repeats the '// &
@@ -83,14 +83,21 @@ contains
    end function ratchet
 
    !> What a cycle did, in words.
-   function words_of(run, model, cycle, before) result(words)
+   function words_of(run, model, cycle, before, change) result(words)
       type(simulation_type), intent(in) :: run
       type(model_type), intent(in) :: model
       type(cycle_type), intent(in) :: cycle
       type(solution_state_type), intent(in) :: before
+      real(dp), intent(in) :: change                    ! of what is compared
       character(:), allocatable :: words
       real(dp) :: growth(2), least, moved
 
+      if (.not. allocated(before%history)) then
+         words = 'displacements'
+         if (cycle%until == until_force) words = 'contact forces'
+         words = words//' change by '//to_text(change)//' of the largest one in the last cycle'
+         return
+      end if
       growth = run%corrections%largest_growth(model, run%state, before)
       moved = ratchet(run, model, before)
       least = no_strain

@@ -333,7 +333,7 @@ def told(folder, cards, name="bree"):
     deck = write(folder / f"{name}.inp", cards)
     times = datasets(solve(deck), "history")["history/time"]
     words = [line.strip() for line in deck.with_suffix(".lst").read_text().splitlines()
-             if re.match(r" +(shakes down|creeps by|alternates|ratchets by)", line)]
+             if re.match(r" +(shakes down|creeps by|alternates|ratchets by|displacements)", line)]
     return words[0], times
 
 
@@ -385,6 +385,14 @@ def test_cycles_wait_for_strains_or_displacements(tmp_path):
     note_changes(*decks)
     strains, displacements = [told(tmp_path, deck, f"{k}")[1][-1] for k, deck in enumerate(decks)]
     assert strains < displacements < 400
+
+
+def test_cycles_of_elastic_bodies_tell_how_far_they_repeat(tmp_path):
+    """Not that strains shake down: nothing yields."""
+    words, times = told(tmp_path, [*bar(), *stretched(0.003, "*STATIC", "1., 1."),
+                                   "*CYCLE, UNTIL=U, REPEAT=9"])
+    assert words == "displacements change by 0 of the largest one in the last cycle"
+    assert times[-1] == 2.0
 
 
 def test_what_creeps_on_does_not_shake_down(tmp_path):

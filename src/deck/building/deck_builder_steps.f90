@@ -11,6 +11,7 @@ module deck_builder_steps
    use deck_context, only: deck_type
    use deck_structure, only: cards_of
    use kinds, only: dp
+   use materials, only: has_law
    use steps, only: adapts_increments, analysis_coupled, analysis_heat, analysis_static, &
       cycle_type, increment_growth, least_increment, planned_increments, solves_heat, &
       solves_mechanics, step_controls_type, step_type, until_displacement, until_force, until_strain
@@ -155,6 +156,9 @@ contains
          cycle%until = until_strain
       end select
       if (deck%has_errors()) return
+      if (cycle%until == until_strain .and. .not. any(has_law(deck%model%materials))) call &
+         deck%error(card%place, 'no material yields or creeps, so strains of all cycles are '// &
+         'equal; UNTIL=U or UNTIL=CFN compares displacements or contact forces')
       cycle%last = n + repeats*cycle%steps
       do k = n, cycle%last, cycle%steps
          deck%model%steps(k)%cycle = cycle

@@ -30,7 +30,8 @@ contains
                repeats = number_of(card, 'REPEAT')
                first = first_card(cards, k, steps)
                if (first == 0) call report%error(card%place_of('STEPS'), '*CYCLE stands behind '// &
-                  'the last of '//counted(steps, 'step')//', none of which is in a *CYCLE before')
+                  'the *END STEP of the last of '//counted(steps, 'step')// &
+                  ', none of which is in a *CYCLE before')
                if (repeats > most_repeats) call report%error(card%place_of('REPEAT'), &
                   'REPEAT is at most '//to_text(most_repeats))
             end associate
@@ -57,12 +58,21 @@ contains
       type(cards_type), intent(in) :: cards
       integer, intent(in) :: k, steps
       integer :: found
+      logical :: is_closed
 
       found = 0
+      is_closed = .false.
       do first_card = k - 1, 1, -1
-         if (cards%keywords(first_card)%name == 'CYCLE') exit
-         if (cards%keywords(first_card)%name == 'STEP') found = found + 1
-         if (found == steps) return
+         select case (cards%keywords(first_card)%name)
+         case ('CYCLE')
+            exit
+         case ('END STEP')
+            is_closed = .true.
+         case ('STEP')
+            if (.not. is_closed) exit
+            found = found + 1
+            if (found == steps) return
+         end select
       end do
       first_card = 0
    end function first_card
