@@ -78,13 +78,13 @@ contains
          spacing = max(spacing, small_part*length)
          call take(slide, abs(movement)/spacing, 'slides farther than the spacing of its nodes '// &
             'and a twentieth of the length in contact, ', spacing, &
-            '; draw the bodies where they slide to')
+            '; take SLIDING=FINITE, or draw the bodies where they slide to')
       end if
       change = [(abs(line_value(s, gap, s(k) + movement(k)) - gap(k)), k=1, size(closed))]
       closes = max(points%finest_gap, closed_gap(gap, closed))
       call take(slide, change/(small_change*closes), 'slides to where the gap of the mesh '// &
          'differs by ', change, ', more than a tenth of what the contact closes, '// &
-         to_text(closes)//'; draw the bodies where they slide to')
+         to_text(closes)//'; take SLIDING=FINITE, or draw the bodies where they slide to')
 
    contains
       !> Takes the contact point that exceeds a limit most, if it does so more than the one before.

@@ -225,7 +225,7 @@ contains
       end if
       if (allocated(self%inelastic_strain)) call add_strains(self, model, lines)
       if (allocated(self%solid_time)) call append(lines, summary_line('all solid at', &
-         self%solid_time, mark_of(reason_inside_step(model)), '-', ''))
+         self%solid_time, mark_of(reason_inside_step(model)), or_blank(model%units%time), ''))
       if (allocated(self%cycle)) call append(lines, self%cycle)
       if (self%stability /= '') call append(lines, self%stability)
       if (allocated(self%leading)) call append(lines, leading_words(self%leading, or_blank( &

@@ -275,6 +275,17 @@ def test_properties_that_no_solid_has_in_the_units_of_the_deck(tmp_path, units, 
     assert all(told[card] in message and "units of *OPTIONS, UNITS=, beyond the" in message for message, card in found)
 
 
+@pytest.mark.parametrize(("heat", "units", "told"), [
+    (3.9e5, "mm MPa W C", False), (390.0, "mm MPa W C", True), (3.9e8, "mm MPa W C", True), (390.0, "furlong MPa W Z", False)])
+def test_a_latent_heat_in_other_units_than_the_specific_heat(tmp_path, heat, units, told):
+    cards = [f'*OPTIONS, UNITS="{units}"', *heated("20.")]
+    melt = ["*DENSITY", "2.7E-6", "*SPECIFIC HEAT", "1000.", "*LATENT HEAT", f"{heat!r}, 30., 60."]
+    where = cards.index("*ELASTIC")
+    found = [message for message, card in warnings(tmp_path, [*cards[:where], *melt, *cards[where:]]) if "latent heat of" in message]
+    assert len(found) == told
+    assert all("changes its temperature by" in message for message in found)
+
+
 @pytest.mark.parametrize("analysis", ["*STATIC", "*HEAT TRANSFER, STEADY STATE"])
 def test_units_of_properties_that_no_step_needs_are_not_judged(tmp_path, analysis):
     cards = [*mesh("LOW", [0.0, 1.0], [0.0, 1.0]), *solid("LOW", 2.1e11, 0.3, 0.0, 50.0),

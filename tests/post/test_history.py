@@ -18,6 +18,7 @@ sys.path[:0] = [str(TESTS / each) for each in ("decks", "reference")] + [str(TES
 
 from browser import Browser  # noqa: E402
 from comparing import coarse_pictures  # noqa: E402, F401  a fixture
+from physics import material, mesh  # noqa: E402
 from test_prints import BODY, HELD, static  # noqa: E402
 from test_reached import WARM, judged  # noqa: E402
 from test_set_histories import solve  # noqa: E402
@@ -75,6 +76,15 @@ def test_a_set_and_a_quantity_are_chosen(result, tmp_path, capsys, name):
         "increment", "time", "load", *(f"displacement_y_{node}" for node in nodes)]
 
 
+def test_several_sets_are_chosen(result, tmp_path):
+    for arguments in (["--set", "block.top", "BLOCK.BOTTOM"],
+                      ["--set", "block.top", "--set=BLOCK.BOTTOM"]):
+        folder = tmp_path / str(len(arguments))
+        assert plot(["history", *arguments, str(result), "--csv", "--out", str(folder)]) == 0
+        assert sorted(path.name for path in folder.glob("*.csv")) == [
+            "deck.history-BLOCK.BOTTOM.csv", "deck.history-BLOCK.TOP.csv"]
+
+
 @pytest.mark.parametrize(("arguments", "words"), [
     (["--set", "BLOCK.TOPP"], "has no history of a set 'BLOCK.TOPP', nearest: 'BLOCK.TOP': there are "
      "BLOCK.BOTTOM, BLOCK.TOP, BLOCK"),
@@ -93,6 +103,30 @@ def test_a_result_without_histories_says_what_makes_them(tmp_path, capsys):
     assert capsys.readouterr().err == (
         f"plot: error: {plain}: holds no histories: *NODE PRINT and *EL PRINT of the deck say of which "
         "sets it keeps them\n")
+
+
+def test_forces_of_pre_tension_sections_are_drawn(tmp_path, capsys):
+    """Two bars, held at both ends: the forces are those that the deck prescribes."""
+    bars, forces = [], {"900": 5.0, "901": 7.0}
+    for name, node, first, x in (("ONE", "900", 1, 0.0), ("TWO", "901", 101, 3.0)):
+        bars += [*mesh(name, [x, x + 1.0], [0.0, 1.0, 2.0], first=first),
+                 *material(name, (1e3, 0.0)), "*NODE", f"{node}, {x}, 9.",
+                 f"*SURFACE, NAME=CUT{name}", f"{first}, S3",
+                 f"*PRE-TENSION SECTION, NODE={node}, SURFACE=CUT{name}"]
+    held = [f"{name}.{end}, {axis}" for name in ("ONE", "TWO")
+            for end, axis in (("BOTTOM", 2), ("TOP", 2), ("LEFT", 1))]
+    path = solve(tmp_path, bars, static("*BOUNDARY", *held, "*CLOAD", *(
+        f"{node}, 1, {force}" for node, force in forces.items()), times="0.5, 1."))
+    assert plot(["history", str(path), "--quantity", "pre_tension", "--csv", "--out",
+                 str(tmp_path)]) == 0
+    assert report([str(path), "--out", str(tmp_path)]) == 0
+    chart, = (each for each in page_data(tmp_path / "deck.html")["history"]
+              if each["key"] == "pre_tension")
+    table = rows(tmp_path / "deck.history-pre_tension.csv")
+    for k, force in enumerate(forces.values()):
+        np.testing.assert_allclose(table[f"pre_tension_{k + 1}"], [0.5 * force, force])
+        assert chart["curves"][k]["name"] == f"section {k + 1}"
+        np.testing.assert_allclose(chart["curves"][k]["values"], [0.5 * force, force])
 
 
 def page_data(path):
@@ -154,7 +188,7 @@ def test_times_and_temperatures_have_their_units(usual, tmp_path):
         file["history/nodes/TOP/temperature"] = times[:, None]
         file["history/nodes/TOP/temperature"].attrs["unit"] = "C"
     with Result(path) as opened:
-        (top,) = history.chosen(opened, "TOP")
+        (top,) = history.chosen(opened, ["TOP"])
         (axes,) = history.picture(opened, top, ["temperature"]).axes
     assert (axes.get_xlabel(), axes.get_ylabel()) == ("Time (s)", "Temperature (\N{DEGREE SIGN}C)")
     assert report([str(path), "--out", str(tmp_path)]) == 0

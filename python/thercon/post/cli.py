@@ -79,7 +79,8 @@ def parser():
     add_fields(added["fields"])
     add_name(added["courses"])
     added["history"].add_argument(
-        "--set", metavar="NAME", help="node or element set (default: all, a picture each)"
+        "--set", action="append", metavar="NAME ...",
+        help="node or element set, or several (default: all, a picture each)",
     )
     added["history"].add_argument(
         "--quantity", action="append", metavar="QUANTITY ...",
@@ -232,6 +233,11 @@ def is_name(word):
     return not word.startswith("-") and "." not in word and "/" not in word
 
 
+def is_set(word):
+    """Whether a word may be the name of a set, which may have dots: no option and no result file."""
+    return not word.startswith("-") and "/" not in word and not word.endswith(".vtkhdf")
+
+
 def is_number(word):
     """Whether a word is a number."""
     try:
@@ -242,7 +248,7 @@ def is_number(word):
 
 
 # Options that take several values -> what tells a value from the RESULT that may follow.
-SEVERAL = {"--load": is_number, "--increment": is_number, "--quantity": is_name}
+SEVERAL = {"--load": is_number, "--increment": is_number, "--quantity": is_name, "--set": is_set}
 
 
 def run(arguments):

@@ -1,4 +1,4 @@
-"""Histories of sets of nodes and elements over time or load."""
+"""Histories of sets of nodes and elements, pre-tension and reference nodes over time or load."""
 
 import numpy as np
 
@@ -76,7 +76,8 @@ def picture(result, history, keys):
     if members:  # the same in all panels
         figure.legend(*members, **style.BELOW, ncols=len(members[0]))
     note = f"{history.kind.capitalize()} of {style.plain(history.name)}"
-    members = "the nodes" if history.kind == "nodes" else "the integration points"
+    members = {"nodes": "the nodes", "elements": "the integration points", "run": "all"}[history.kind]
+    note = history.name.capitalize() if history.kind == "run" else note
     figure.supxlabel(f"{note}\n{OF_SEVERAL.format(members)}" if ranges else note, fontsize=8.5)
     return figure
 

@@ -68,7 +68,8 @@ COMPONENTS = {"displacement": 3, "mode_displacement": 3, "stress": 4, "principal
 
 def words_of(name):
     """Return the name of a quantity as one speaks it."""
-    return re.sub("^edge_", "edge of ", name).replace("_", " ")
+    spoken = re.sub("^edge_", "edge of ", name).replace("pre_tension", "pre-tension")
+    return spoken.replace("_", " ")
 
 
 def uncertainty_of(group):

@@ -1,5 +1,5 @@
 """Histories of sets: what *NODE PRINT and *EL PRINT keep in the result file, /history/nodes and
-/history/elements."""
+/history/elements; and those of pre-tension sections and reference nodes, which are in /history."""
 
 from dataclasses import dataclass
 
@@ -14,31 +14,33 @@ from .units import unit_of
 KINDS = {"nodes": "node", "elements": "element"}
 OF_ROWS = ("increment", "time")
 OF_MEMBERS = (*KINDS.values(), "point")
+OF_RUNS = {"pre-tension": ("section", ("pre_tension",)),
+           "reference nodes": ("reference node", ("U3", "UR1", "UR2", "RF3", "RM1", "RM2"))}
 
 
 @dataclass
 class SetHistory:
     """One set: a row for each increment at which it was printed."""
 
-    kind: str  # nodes or elements
+    kind: str  # nodes, elements or, of all increments, run
     name: str
     increment: np.ndarray  # (rows), from 1
     time: np.ndarray  # (rows)
-    members: list  # numbers of the nodes, as text; of points "element.point"
+    members: list  # numbers of the nodes, as text; of points "element.point"; of a run in words
     values: dict  # quantity -> (rows, members), of a total (rows)
     units: dict  # quantity -> unit; empty where the deck names none
 
     @property
     def member_word(self):
         """What one of the members is."""
-        return "node" if self.kind == "nodes" else "point"
+        return {"nodes": "node ", "elements": "point ", "run": ""}[self.kind]
 
     def curves(self, quantity):
         """Return [(words, values)] of a quantity: one for each member, or that of a total."""
         values = self.values[quantity]
         if values.ndim == 1:
             return [("", values)]
-        return [(f"{self.member_word} {member}", values[:, k])
+        return [(f"{self.member_word}{member}", values[:, k])
                 for k, member in enumerate(self.members)]
 
 
@@ -52,7 +54,19 @@ def set_histories(result):
             need(result.file["history"], isinstance(groups[name], h5py.Group),
                  f"{kind}/{name} is no group")
             found.append(read_set(groups[name], kind, word, text(name)))
-    return found
+    return found + [of_run(result, name) for name, (_, keys) in OF_RUNS.items()
+                    if any(key in result.history for key in keys)]
+
+
+def of_run(result, name):
+    """Return the history of pre-tension sections or reference nodes, numbered in the order of the
+    deck."""
+    word, keys = OF_RUNS[name]
+    values = {key: result.history[key] for key in keys if key in result.history}
+    columns = max(found.shape[1:] for found in values.values())
+    units = {key: unit_of(text(result.file["history"][key].attrs.get("unit", ""))) for key in values}
+    return SetHistory("run", name, np.arange(1, result.increments + 1), result.history["time"],
+                      [f"{word} {k + 1}" for k in range(*columns or (1,))], values, units)
 
 
 def read_set(group, kind, word, name):
@@ -81,20 +95,19 @@ def member_labels(group, word):
     return labels
 
 
-def chosen(result, name):
-    """Return the sets that a name means in any case, all without one."""
+def chosen(result, wanted):
+    """Return the sets that names mean in any case, all without one."""
     found = [each for each in set_histories(result) if len(each.time) and each.values]
     if not found:
         raise UserError(f"{result.path}: holds no histories: *NODE PRINT and *EL PRINT of the deck "
                         "say of which sets it keeps them")
-    if name is None:
-        return found
-    meant = [each for each in found if each.name.lower() == name.lower()]
-    if not meant:
-        names = list(dict.fromkeys(each.name for each in found))
-        raise UserError(f"{result.path}: has no history of a set '{name}'"
-                        f"{nearest_name(name, names)}: there are {', '.join(names)}")
-    return meant
+    names = list(dict.fromkeys(each.name for each in found))
+    for name in wanted or ():
+        if name.lower() not in [each.lower() for each in names]:
+            raise UserError(f"{result.path}: has no history of a set '{name}'"
+                            f"{nearest_name(name, names)}: there are {', '.join(names)}")
+    meant = [name.lower() for name in wanted or names]
+    return [each for each in found if each.name.lower() in meant]
 
 
 def label(quantity):

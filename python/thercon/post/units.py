@@ -57,4 +57,5 @@ def unit_of(words):
     """Return the unit that a dataset names as pictures and page show it; empty where the deck names
     none and it has a quantity in its place."""
     is_named = words != "-" and not re.search("length|stress|power|temperature", words)
-    return plain_unit(words).replace("^2", "\N{SUPERSCRIPT TWO}") if is_named else ""
+    raised = plain_unit(words).replace("^2", "\N{SUPERSCRIPT TWO}")
+    return raised.replace("^3", "\N{SUPERSCRIPT THREE}") if is_named else ""

@@ -61,6 +61,7 @@ contains
                if (n == 0) then
                   if (len(card%meant) == 0) call deck%missing(card%place, '*'//card%name// &
                      ' has no *MATERIAL before it')
+                  call deck%lose('*'//card%name)
                else if (size(card%data) > 0) then
                   call build_property(card, deck, deck%model%materials(n))
                end if

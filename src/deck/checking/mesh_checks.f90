@@ -14,7 +14,7 @@ module mesh_checks
    use quadrature, only: integration_rule, most_points, point_count
    use shape_functions, only: element_gradients, element_shape, node_position
    use sorting, only: sort_order
-   use text, only: others, to_text
+   use text, only: others, to_text, to_upper
    implicit none
    private
    public :: check_planes, check_sides, check_jacobians, check_folds, check_slenderness, &
@@ -166,7 +166,7 @@ contains
    end subroutine check_middles
 
    !> Faces of surfaces are free: reported once a surface, where the first is named. What is loaded
-   !> through such a face is not told again.
+   !> through such a face is not told again, nor a section that an error kept from being cut.
    subroutine check_faces(deck, uses)
       type(deck_type), intent(inout) :: deck
       integer, intent(inout) :: uses(:, :)   !! (4, elements) elements that meet at each side
@@ -183,6 +183,7 @@ contains
                wrong(faces(2, i), faces(1, i)) = wrong(faces(2, i), faces(1, i)) .or. inside(i)
             end do
             i = findloc(inside, .true., dim=1)
+            if (is_of_section(deck, deck%mesh%surfaces(s)%name)) i = 0
             if (i > 0) call deck%error(deck%face_places(s)%items(i), 'face S'//to_text(faces(2, &
                i))//' of element '//to_text(deck%mesh%element_number(faces(1, i)))//' in '// &
                'surface '//deck%mesh%surfaces(s)%name//' lies inside a body: another element '// &
@@ -194,6 +195,19 @@ contains
       end do
       where (wrong) uses = 0
    end subroutine check_faces
+
+   !> Whether a *PRE-TENSION SECTION cuts a body along a surface.
+   pure logical function is_of_section(deck, surface)
+      type(deck_type), intent(in) :: deck
+      character(*), intent(in) :: surface
+      integer :: k
+
+      is_of_section = .false.
+      do k = 1, size(deck%cards%keywords)
+         if (deck%cards%keywords(k)%name == 'PRE-TENSION SECTION') is_of_section = &
+            is_of_section .or. to_upper(deck%cards%keywords(k)%text('SURFACE')) == surface
+      end do
+   end function is_of_section
 
    !> The Jacobian is positive at the integration points of every element. Elements that go round
    !> clockwise are reported once.

@@ -1,4 +1,4 @@
-"""Histories of sets of nodes and elements on the page."""
+"""Histories of sets of nodes and elements, pre-tension and reference nodes on the page."""
 
 import numpy as np
 
@@ -10,7 +10,8 @@ def of_sets(result, listed):
     """Return a chart of each quantity of each set: the curves of its members, of many their smallest,
     mean and largest values. `listed` makes a list of values."""
     return [chart(history, key, listed, result.increments) for history in set_histories(result)
-            for key in history.values if len(history.time)]
+            for key, values in history.values.items()
+            if len(history.time) and (history.kind != "run" or values.ndim > 1)]
 
 
 def chart(history, key, listed, count):
@@ -28,10 +29,11 @@ def chart(history, key, listed, count):
     values = np.full(count, np.nan)
     values[history.increment - 1] = middle
     told = f", {curves[0][0]}" if 1 < len(curves) <= MOST_CURVES else ""
+    of = "" if history.kind == "run" else f" of {history.name}"
     told = ", mean" if len(history.curves(key)) > MOST_CURVES else told
     return {
         "key": key,
-        "label": f"{label(key)} of {history.name}{told}",
+        "label": f"{label(key)}{of}{told}",
         "unit": history.units[key],
         "values": listed(values),
         "uncertainty": [],
