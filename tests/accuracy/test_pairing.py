@@ -24,7 +24,8 @@ times the CPU seconds. Use `PAIRING=SURFACES` on the faces of a crack whose forc
 | cracked plate | force and heat less than a tenth: node pairs leave out the share of the tip |
 
 Where the edge of contact lies inside a side, single pressures of mortar points alternate about the
-true ones, by up to 13 % of the largest one next to the edge of Hertz's contact with 8 sides.
+true ones, by up to 13 % of the largest one next to the edge of Hertz's contact with 8 sides, and by
+more where a peak is narrower than a side, as where a flat passes into a round: refine faces there.
 """
 DETAILS = """
 The errors below are magnitudes, in per cent of converged values (`tests/accuracy/converged.csv`), at the end of the load,
