@@ -521,7 +521,8 @@ contains
       end do
    end function words_of
 
-   !> An uncertainty with two digits, and in per cent, or why there is none.
+   !> An uncertainty with two digits, and in per cent of a value that is not small beside it, or why
+   !> there is none.
    pure function uncertainty_words(errors, q) result(words)
       class(uncertainty_type), intent(in) :: errors
       integer, intent(in) :: q                       ! the quantity
@@ -536,7 +537,8 @@ contains
          end if
          number = few_digits(total)
          column = ' +- '//number
-         if (abs(value) > 0.0_dp) column = ' +- '//number//'('//percent(total/abs(value))//')'
+         if (total < 10.0_dp*abs(value)) column = ' +- '//number//'('// &
+            percent(total/abs(value))//')'
       end associate
       words = column
    end function uncertainty_words
