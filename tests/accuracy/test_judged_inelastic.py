@@ -41,8 +41,7 @@ are `ALLPD` or `ALLCD`, and `ALLWK`. Both have an uncertainty where \\*VERIFY na
 """
 IN_DOCUMENT = []
 SHARES, OF_FAMILIES = "Inelastic decks that hold", "Inelastic decks of each family that hold"
-TESTED = ("tubes 1000", "tubes 1001", "tubes 1002", "fits 1001", "fits 1003", "fits 1004",
-          "punches 1006", "punches 1007")
+TESTED = "tubes 1000", "tubes 1002", "fits 1001", "fits 1004", "punches 1006"
 
 
 def drawn(told):
@@ -126,7 +125,7 @@ def test_reference_creeps():
     assert np.allclose(pressures, [82.4176, 36.158], rtol=0.0, atol=0.002)
 
 
-@pytest.mark.parametrize(("family", "seed"), [("tubes", 1), ("tubes", 9), ("fits", 1), ("fits", 2)])
+@pytest.mark.parametrize(("family", "seed"), [("tubes", 9), ("fits", 1)])
 def test_the_program_comes_to_the_reference(family, seed, tmp_path):
     """At least in the first order, on a quarter of the elements, in an eighth of the increments."""
     deck = FAMILIES[family](seed)

@@ -60,6 +60,12 @@ def copy_deck(source, target, cards=(), changes=()):
     return target
 
 
+def pairs(first, second, third):
+    """Return combinations of three lists: all pairs of the first two, each with one of the third, which
+    changes with both."""
+    return [(a, b, third[(i + j) % len(third)]) for i, a in enumerate(first) for j, b in enumerate(second)]
+
+
 def data_cards(deck, keyword):
     """Return the fields of the data cards of every card with a keyword, in one list."""
     rows, inside = [], False

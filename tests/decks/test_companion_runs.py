@@ -1,7 +1,6 @@
 """Numerical uncertainties solve companion runs beside a run. They read it and change nothing of it:
 with and without them all results are equal bit for bit, and messages to the letter."""
 
-import itertools
 import re
 import shutil
 
@@ -58,14 +57,14 @@ def test_a_complete_finer_run_changes_no_digit_of_a_deck(tmp_path, deck):
 
 
 @pytest.mark.parametrize(("name", "scheme"), [
-    *itertools.product(["cylinder/cylinder-coupled", "rods/r1"], SCHEMES)])
+    ("cylinder/cylinder-coupled", "CRANK-NICOLSON"), *(("rods/r1", scheme) for scheme in SCHEMES)])
 def test_estimates_change_no_digit_with_any_scheme(tmp_path, name, scheme):
     deck = copy_without_checks(INPUT / f"{name}.inp", tmp_path)
     assert_equal_results(deck, [f"*THERMAL SCHEME, TYPE={scheme}"])
 
 
-@pytest.mark.parametrize("scheme", SCHEMES)
-@pytest.mark.parametrize("films", ["ramped", "at once"])
+@pytest.mark.parametrize(("films", "scheme"), [
+    *(("ramped", scheme) for scheme in SCHEMES), ("at once", "GALERKIN")])
 def test_estimates_change_no_digit_with_films(tmp_path, films, scheme):
     """Films that begin at once are other ones in increments of twice the size; the others grow in
     one step, end in the last and stay in between."""

@@ -2,22 +2,19 @@
 increments, and the program says so; Newton's method does."""
 
 import re
-import subprocess
-import sys
 
 import h5py
 import numpy as np
 import pytest
-from deck_runs import COUPLED, INPUT, copy_deck, run, solve
+from deck_runs import COUPLED, copy_deck, run, solve
 
-PLOT = INPUT.parent / "post" / "plot"
 CARD = "*FIXED POINT, METHOD=NEWTON"
 MAX_ITERATIONS = 50  # the default
 
 
 @pytest.fixture(
     scope="module",
-    params=[("ZAITSEV", 0), ("PICARD", 0), ("ZAITSEV", 1), ("PICARD", 1)],
+    params=[("PICARD", 0), ("ZAITSEV", 1)],
     ids=lambda p: f"{p[0]}-refined{p[1]}",
 )
 def twin(request, tmp_path_factory):
@@ -93,15 +90,6 @@ def test_checks_of_the_deck_pass(twin):
         assert file["run"].attrs["verify_failed"] == 0
 
 
-def test_history_is_plotted(tmp_path):
-    result = solve(copy_deck(COUPLED, tmp_path / "twin.inp", (),
-                             {CARD: "*FIXED POINT, METHOD=ZAITSEV"}), status=2)
-    command = [sys.executable, PLOT, "convergence", result, "--out", tmp_path]
-    subprocess.run(command, check=True, capture_output=True)
-    (picture,) = tmp_path.glob("*.png")
-    assert picture.read_bytes().startswith(b"\x89PNG")
-
-
 QUANTITIES = ("gap", "pressure", "shear", "conductance", "heat_flux")
 
 
@@ -124,7 +112,7 @@ def assert_one_solution(one, other, increments):
 
 
 @pytest.mark.parametrize(
-    ("levels", "step"), [(0, 20), (1, 20), (2, 20), (0, 5), (1, 10), (0, 60), (1, 100), (2, 300)]
+    ("levels", "step"), [(1, 20), (0, 5), (0, 60), (2, 300)]
 )
 def test_newton_converges_in_every_increment(tmp_path, levels, step):
     text = COUPLED.read_text()
@@ -144,10 +132,11 @@ def test_newton_converges_in_every_increment(tmp_path, levels, step):
         assert file["history/coupling_gain_max"][()].max() < 1.0
 
 
-@pytest.fixture(scope="module", params=[0, 1])
-def by_newton(request, tmp_path_factory):
-    """Return the refinement cards, and quantities and history of the twin by Newton's method."""
-    cards = [f"*REFINE, LEVELS={request.param}"] if request.param else []
+@pytest.fixture(scope="module")
+def by_newton(tmp_path_factory):
+    """Return the refinement cards, and quantities and history of the twin by Newton's method. The mesh of
+    the deck is the matter of tests/stability/test_fixed_point.py."""
+    cards = ["*REFINE, LEVELS=1"]
     path = tmp_path_factory.mktemp("newton") / "twin.inp"
     return cards, *solved(path, cards)
 

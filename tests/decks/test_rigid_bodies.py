@@ -6,7 +6,7 @@ import h5py
 import numpy as np
 import pytest
 from blocks import write
-from deck_runs import run, solve, solve_as_written
+from deck_runs import pairs, run, solve, solve_as_written
 from physics import follows, judge, material, mesh
 
 YOUNG, POISSON, RADIUS, SIZE = 7e4, 0.33, 100.0, 40.0
@@ -68,13 +68,12 @@ def hertz(kind, radius, width):
     return force, peak, peak * np.sqrt(squares.max() / 2)
 
 
-@pytest.mark.parametrize(("level", "options"), [(0, []), (1, []), (0, ["--accuracy", "1%"])],
-                         ids=["deck", "refined", "accuracy"])
-@pytest.mark.parametrize("pairing", ["NODES", "SURFACES"])
-@pytest.mark.parametrize("kind", ["CPE8", "CAX8"])
-def test_errors_are_within_their_uncertainties(tmp_path, kind, pairing, level, options):
+@pytest.mark.parametrize(("how", "kind", "pairing"), pairs(
+    [(0, []), (1, []), (0, ["--accuracy", "1%"])], ["CPE8", "CAX8"], ["NODES", "SURFACES"]))
+def test_errors_are_within_their_uncertainties(tmp_path, kind, pairing, how):
     """Johnson, sections 3.4, 4.2. Stress below a line load on a block errs by its width over the
     block's; normals lean by x/(2 R)."""
+    level, options = how
     radius, size, width = 1000.0, 4e4 if kind == "CPE8" else 400.0, 1.0
     force, peak, stress = hertz(kind, radius, width)
     lean = (width / radius)**2 / (32 if kind == "CPE8" else 20)

@@ -18,7 +18,7 @@ from frictional_heat import burton
 
 WIDTH = 1e-3   # so that temperatures even out across the rods
 RODS = 500
-RESTING = 50   # of the many rods whose motions all die out without a period
+RESTING = 10   # of the many rods whose motions all die out without a period
 
 
 def rod_deck(both, law, capacities, omega, *cards, stability="*STABILITY", elements=(8, 8),
@@ -246,7 +246,7 @@ def half_plane(ratio, depth, slow=None):
             "*END STEP"]
 
 
-@pytest.mark.parametrize("ratio", [0.9, 1.5, 2.5, 4.5])
+@pytest.mark.parametrize("ratio", [0.9, 4.5])
 @pytest.mark.parametrize(("depth", "slow"), [
     (14.0, None), (300.0, None), (3e4, None), (14.0, (30.0, 1e-4)), (14.0, (3e3, 1e-6)),
     (300.0, (30.0, 1e-8))])

@@ -20,8 +20,8 @@ SNAKEMAKE = Path(__file__).resolve().parents[2] / "build" / "sweep" / "bin" / "s
 LENGTH, CONDUCTIVITY, YOUNG, EXPANSION = 0.1, 20.0, 2e11, 12e-6
 GAS_A, GAS_B, CLOSED_C = 0.15, 1e-5, 1e-4
 AREA = 0.05 * 20.0
-EVERY, RUNS = 5, 40  # every fifth row of the table
-WRONG = 115  # the run whose gap is no number
+EVERY, RUNS = 10, 20  # every tenth row of the table
+WRONG = 110  # the run whose gap is no number
 
 with_snakemake = pytest.mark.skipif(not SNAKEMAKE.exists(),
                                 reason="build/sweep has no Snakemake; ./setup.sh test makes it")
@@ -87,7 +87,7 @@ def assert_closed_form(row):
 def test_runs_one_of_them_failing_and_a_second_start(tmp_path):
     folder = tmp_path / "sweep"
     workflow(folder)
-    change(folder, WRONG, "7.5E-04", "7.5E-04m")
+    change(folder, WRONG, "5.0E-04", "5.0E-04m")
     process = start(folder)
     assert process.returncode == 1
     assert f"run {WRONG}: deck error" in process.stderr + process.stdout
@@ -103,14 +103,14 @@ def test_runs_one_of_them_failing_and_a_second_start(tmp_path):
     assert RUNS / 10 < len(closed) < RUNS - RUNS / 10
 
     # Mended, lost and changed rows are run, and nothing else is.
-    change(folder, WRONG, "7.5E-04m", "7.5E-04")
+    change(folder, WRONG, "5.0E-04m", "5.0E-04")
     change(folder, 10, "5.0E-04", "5.2E-04")
-    shutil.rmtree(folder / "runs" / "005")
+    shutil.rmtree(folder / "runs" / "020")
     before = ages(folder)
     process = start(folder)
     assert process.returncode == 0, process.stderr
     after = ages(folder)
-    assert {run for run in after if after[run] != before.get(run)} == {"005", "010", str(WRONG)}
+    assert {run for run in after if after[run] != before.get(run)} == {"010", "020", str(WRONG)}
     rows = gathered(folder)
     assert len(rows) == RUNS
     for row in rows.values():

@@ -9,7 +9,7 @@ import h5py
 import numpy as np
 import pytest
 from blocks import write
-from deck_runs import assert_alike, datasets, run, solve
+from deck_runs import assert_alike, datasets, pairs, run, solve
 from physics import material, mesh, nodes_of, outer_nodes, verify
 from scipy.optimize import brentq
 
@@ -105,8 +105,8 @@ def strained(kind, temperature, section="", **properties):
                                     times="0.5, 1.")]
 
 
-@pytest.mark.parametrize("kind", KINDS)
-@pytest.mark.parametrize("temperature", [-80.0, WARM, 300.0, 900.0])
+@pytest.mark.parametrize(("kind", "temperature"), [
+    *((kind, WARM) for kind in KINDS), ("CPE3", -80.0), ("CPE8", 300.0), ("CAX4I", 900.0)])
 def test_a_uniform_temperature_takes_the_constants_of_its_row(tmp_path, kind, temperature):
     """Between rows, in one, and beyond both ends, where the table is held."""
     one = solved(tmp_path, strained(kind, temperature, **ISOTROPIC), "one")
@@ -182,9 +182,8 @@ def single(properties):
     return {key: [rows[0]] if isinstance(rows, list) else rows for key, rows in properties.items()}
 
 
-@pytest.mark.parametrize("joint", ["NODES", "SURFACES", "TIE"])
-@pytest.mark.parametrize("kind", ["CPE8", "CAX8", "CPS4"])
-@pytest.mark.parametrize("transient", [False, True])
+@pytest.mark.parametrize(("joint", "kind", "transient"), pairs(
+    ["NODES", "SURFACES", "TIE"], ["CPE8", "CAX8", "CPS4"], [False, True]))
 def test_tables_that_a_run_leaves_alone_change_nothing(tmp_path, kind, joint, transient):
     """One row, equal rows, and rows that are equal where the run goes."""
     how = {"analysis": "*COUPLED TEMPERATURE-DISPLACEMENT, DIRECT"} if transient else {}
@@ -209,9 +208,8 @@ def assert_whole(folder, one, other, tolerance=EXACT, names=("temperature", "dis
         np.testing.assert_allclose(b, a, rtol=0, atol=tolerance * np.abs(a).max())
 
 
-@pytest.mark.parametrize("joint", ["NODES", "SURFACES", "TIE"])
-@pytest.mark.parametrize("kind", ["CPE8", "CAX6"])
-@pytest.mark.parametrize("properties", [ISOTROPIC, ORTHOTROPIC], ids=["isotropic", "orthotropic"])
+@pytest.mark.parametrize(("joint", "kind", "properties"), pairs(
+    ["NODES", "SURFACES", "TIE"], ["CPE8", "CAX6"], [ISOTROPIC, ORTHOTROPIC]))
 def test_both_solvers_give_the_same_result(tmp_path, kind, joint, properties):
     divisions = (4, 3) if joint == "SURFACES" else (3, 3)
     one, other = ([*joined(kind, joint, method=[f"*SOLVER, TYPE={solver}"], divisions=divisions,
@@ -306,24 +304,22 @@ CAPACITY = tables.product([(row[0], row[1]) for row in STORING["density"]],
                           [(row[0], row[1]) for row in STORING["specific_heat"]], 400)
 
 
-@pytest.mark.parametrize("scheme", SCHEMES)
-@pytest.mark.parametrize("kind", ["CPE8", "CAX8R", "CPS3", "CAX4", "CPE6", "CPE4I"])
-def test_a_body_that_is_warmed_evenly_has_the_enthalpy_that_it_was_given(tmp_path, scheme, kind):
+@pytest.mark.parametrize(("scheme", "kind", "power"), pairs(
+    SCHEMES, ["CPE8", "CAX8R", "CPS3", "CAX4", "CPE6", "CPE4I"], [200.0, -60.0]))
+def test_a_body_that_is_warmed_evenly_has_the_enthalpy_that_it_was_given(tmp_path, scheme, kind, power):
     """Heat within it, or cooled below its table, none through its sides; the integral of rho c."""
-    for power in (200.0, -60.0):
-        cards = [f"*THERMAL SCHEME, TYPE={scheme}", *mesh("BODY", XS, YS, kind),
-                 *material("BODY", zero=ZERO, **(ISOTROPIC | STORING | {
-                     "conductivity": [(1e3, 0.0), (2e3, 600.0)]})), *initial("BODY"),
-                 *step("*DFLUX", f"BODY, BF, {power!r}", analysis="*HEAT TRANSFER, DIRECT",
-                       times="0.4, 4.")]
-        found = last(solved(tmp_path, cards), "temperature")
-        expected = tables.of_integral(CAPACITY, tables.integral(CAPACITY, START) + 4.0 * power)
-        np.testing.assert_allclose(found, expected, rtol=0, atol=2e-5 * abs(expected - START))
+    cards = [f"*THERMAL SCHEME, TYPE={scheme}", *mesh("BODY", XS, YS, kind),
+             *material("BODY", zero=ZERO, **(ISOTROPIC | STORING | {
+                 "conductivity": [(1e3, 0.0), (2e3, 600.0)]})), *initial("BODY"),
+             *step("*DFLUX", f"BODY, BF, {power!r}", analysis="*HEAT TRANSFER, DIRECT",
+                   times="0.4, 4.")]
+    found = last(solved(tmp_path, cards), "temperature")
+    expected = tables.of_integral(CAPACITY, tables.integral(CAPACITY, START) + 4.0 * power)
+    np.testing.assert_allclose(found, expected, rtol=0, atol=2e-5 * abs(expected - START))
 
 
-@pytest.mark.parametrize("scheme", SCHEMES)
-@pytest.mark.parametrize("joint", ["NODES", "SURFACES", "TIE"])
-@pytest.mark.parametrize("free", [False, True], ids=["direct", "adaptive"])
+@pytest.mark.parametrize(("scheme", "joint", "free"), pairs(
+    SCHEMES, ["NODES", "SURFACES", "TIE"], [False, True]))
 def test_heat_is_stored_or_leaves(tmp_path, scheme, joint, free):
     """In every increment; and all that a body stores is the change of its content."""
     analysis = "*COUPLED TEMPERATURE-DISPLACEMENT" + ("" if free else ", DIRECT")

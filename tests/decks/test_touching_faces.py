@@ -5,7 +5,7 @@ import math
 import h5py
 import pytest
 from blocks import without_unused_surfaces, write
-from deck_runs import run, solve
+from deck_runs import pairs, run, solve
 from physics import material, mesh
 
 CLOSED, CONDUCTIVITY, WARM = 10.0, 1e3, 100.0
@@ -80,13 +80,13 @@ def heat(path):
         return face["heat_flux"][-1] @ face["weight"][()]
 
 
-@pytest.mark.parametrize("steps", [
+@pytest.mark.parametrize(("steps", "faces", "shape"), pairs([
     [HEAT], [COUPLED], [UNCOUPLED], [HEAT, COUPLED], [COUPLED, HEAT], ["*STATIC", HEAT],
-    ["*STATIC", UNCOUPLED]])
-@pytest.mark.parametrize(("sides", "pair"), [
-    ((4, 4), ""), ((4, 4), ", PAIRING=SURFACES"), ((3, 4), ""), ((4, 3), ""), ((13, 7), "")])
-@pytest.mark.parametrize("shape", [None, inclined])
-def test_flat_faces_that_touch_conduct_in_every_kind_of_step(tmp_path, steps, sides, pair, shape):
+    ["*STATIC", UNCOUPLED]],
+    [((4, 4), ""), ((4, 4), ", PAIRING=SURFACES"), ((3, 4), ""), ((4, 3), ""), ((13, 7), "")],
+    [None, inclined]))
+def test_flat_faces_that_touch_conduct_in_every_kind_of_step(tmp_path, steps, faces, shape):
+    sides, pair = faces
     path = deck(tmp_path / "d.inp", shape, "CPE4", sides, steps, pair)
     assert abs(heat(path) / flat(1.0) - 1) < 1e-9
     assert "never closes" not in path.with_suffix(".lst").read_text()

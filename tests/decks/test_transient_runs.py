@@ -47,8 +47,8 @@ def attempts(result):
     return re.findall(r"attempt \d+ of size \S+, to time \S+, not kept: ([^;.]*)", listing)
 
 
-@pytest.mark.parametrize("steps", [1, 2])
-@pytest.mark.parametrize("case", REPEATED)
+@pytest.mark.parametrize(("case", "steps"), [
+    *((case, 1) for case in REPEATED), ("with heat of strains", 2)])
 def test_an_increment_that_is_repeated_starts_from_the_same_state(tmp_path, case, steps):
     """A run whose increments end at the same instants, none of which fails, finds the same."""
     bodies, contact, method, step, reason = REPEATED[case]

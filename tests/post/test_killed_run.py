@@ -25,7 +25,7 @@ def write_long_deck(folder):
     head, step = deck.read_text().split("*VERIFY")[0].split("*STEP")
     assert "\n20., 900." in step and "TOP, 11, 11, 900." in step
     for k in range(STEPS):
-        ramp = step.replace("\n20., 900.", "\n15., 150.")
+        ramp = step.replace("\n20., 900.", "\n30., 150.")
         head += "*STEP" + ramp.replace("TOP, 11, 11, 900.", f"TOP, 11, 11, {150 * (k + 1)}.")
     deck.write_text(head)
     return deck

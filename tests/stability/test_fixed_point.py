@@ -54,7 +54,7 @@ class Extent:
 
 
 WHOLE = Extent(1, COUNT, COUNT, JUMPING, (0, 1, 2), (0, 1), 450)
-TESTED = Extent(5, 10, 20, 20, (0,), (0,), 45)
+TESTED = Extent(5, 6, 10, 10, (0,), (0,), 45)
 
 
 class Tally:

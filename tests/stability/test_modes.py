@@ -363,4 +363,4 @@ def tables(folder):
 def test_modes(tmp_path):
     """Of the maps a part."""
     check_rows([three_states(tmp_path), oscillating(tmp_path)[0], hot_spots(tmp_path)[0],
-                cylinders(tmp_path), maps(tmp_path, every=3)[0]])
+                cylinders(tmp_path), maps(tmp_path, every=4)[0]])
