@@ -20,7 +20,7 @@ module memory_needs
    public :: memory_needed
 
    real(dp), parameter :: real_bytes = 8.0_dp          !! of a number
-   real(dp), parameter :: base = 36.0e6_dp             !! of the program and its libraries [byte]
+   real(dp), parameter :: base = 40.0e6_dp             !! of the program and its libraries [byte]
    real(dp), parameter :: per_entry = 33.0_dp          !! of an entry of element matrices [byte]
    real(dp), parameter :: per_fine_entry = 26.0_dp     !! of one, for the finer mesh [byte]
    real(dp), parameter :: finer = 2.5_dp !! of entries and factors, where most elements are divided
