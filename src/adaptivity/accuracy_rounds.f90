@@ -291,7 +291,7 @@ contains
 
       n = size(rounds)
       associate (finding => rounds(n)%findings(d, step))
-         has_grown = n > 2 .and. ieee_is_nan(finding%uncertainty) .and. .not. finding%at_end > 0.0_dp
+         has_grown = n > 2 .and. ieee_is_nan(finding%uncertainty) .and. finding%at_end <= 0.0_dp
       end associate
       if (.not. has_grown) return
       growth = [(rounds(n - 2 + i)%findings(d, step)%value - &

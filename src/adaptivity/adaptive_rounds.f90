@@ -207,7 +207,7 @@ contains
             if (uncertainty > by_division**most_levels*finding%allowed) levels = most_levels
             ! Where the last increment alone tells no error, the change by sides of half the size
             ! does. Where sides of two lengths meet, pressures of linear elements alternate.
-            if (ieee_is_nan(record%uncertainties(i)%total(q)) .and. .not. finding%at_end > 0.0_dp &
+            if (ieee_is_nan(record%uncertainties(i)%total(q)) .and. finding%at_end <= 0.0_dp &
                .or. estimated(q)%name == 'peak_pressure' .and. &
                any(at_faces .and. side_node_count(model%mesh%element_kind) == 2)) then
                where (at_faces) of_elements = max(of_elements, levels)

@@ -190,6 +190,7 @@ module records
       type(field_record_type), allocatable :: field_uncertainties
       !> (3, *NODE PRINT cards) of the sums of RF1, RF2 and RFL, likewise
       real(dp), allocatable :: total_uncertainties(:, :)
+      real(dp), allocatable :: pre_tension_uncertainties(:)          !! (sections) likewise
       type(contact_record_type), allocatable :: contact_uncertainties(:)   !! for *CONTACT PRINT
       !> Unallocated where the stress is.
       type(error_record_type) :: stress_error = error_record_type()

@@ -26,9 +26,9 @@ DETAILS = """
 `thercon run DECK --accuracy P%` solves in rounds until the uncertainties of normal force, heat rate, peak
 pressure and edge of contact are within P per cent ([\\*ACCURACY](deck/method.md#accuracy) has the rules, also where no
 uncertainty can be given). Each round solves the deck from its beginning, with elements divided where the
-recovered energy norm is large and round the edges of zones, the smaller the nearer. Where the last increment
-alone does not tell what is requested, as the peak pressure with friction, rounds use `ERRORS=FULL`, and take 4
-to 12 times as long.
+recovered energy norm is large and round the edges of zones, the smaller the nearer. Of the peak pressure with
+friction the last increment alone does not tell what builds up along the path: its uncertainty is at least that
+which the change from the round before gives, so that there are two rounds at least.
 
 True errors are those to the [converged values](#numerical-uncertainty), CPU seconds those of all rounds
 together. All start from the deck's mesh without \\*REFINE. "By hand" is the cheapest of six meshes without
