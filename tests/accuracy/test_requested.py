@@ -20,7 +20,7 @@ peak pressure and edge of contact are within P per cent ([\\*ACCURACY](deck/meth
 rules). Each round solves the deck from its beginning on a mesh refined where it errs most. True
 errors are those to the converged values, CPU seconds those of all rounds. "By hand" is the cheapest
 of six meshes whose true error is inside the target; choosing it takes the converged values. Requests
-of 1 % on 32 drawn decks were all reached, with true errors of at most 0.44 % and 98 to 100 % of the uncertainties right.
+of 1 % on 32 drawn decks were all reached, with true errors of at most 0.41 % and 97 to 100 % of the uncertainties right.
 """
 DETAILS = """
 `thercon run DECK --accuracy P%` solves in rounds until the uncertainties of normal force, heat rate, peak
