@@ -4,8 +4,10 @@
 !> that alone does not tell what is requested, of the whole run (ERRORS=FULL). Increments are halved
 !> where a finer mesh brought little. Where a quantity has none for another reason, every round
 !> divides both faces, and the last two changes from round to round tell it by the same rule: one
-!> change can be small by chance. A pressure that has no limit has none whatever the changes are;
-!> where it is at a corner, no round is spent on it.
+!> change can be small by chance. Of a peak pressure with friction the last increment tells a part,
+!> by which meshes are refined; the change from the round before, which has the path in it, adds the
+!> rest. A pressure that has no limit has none whatever the changes are; where it is at a corner, no
+!> round is spent on it.
 module accuracy_rounds
    use, intrinsic :: ieee_arithmetic, only: ieee_is_nan, ieee_quiet_nan, ieee_value
    use accuracy_targets, only: accuracy_request_type
