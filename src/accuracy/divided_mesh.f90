@@ -9,7 +9,7 @@ module divided_mesh
    use connections, only: connections_type
    use contact_points, only: contact_points_type
    use contact_system, only: contact_open
-   use controls, only: method_anderson
+   use controls, only: default_solver, method_anderson
    use element_kinds, only: element_node_count
    use equations, only: equation_nodes
    use errors, only: error_type
@@ -30,7 +30,7 @@ module divided_mesh
    use restarts, only: bring_to, exchange_run
    use solution_state, only: solution_state_type
    use state_tables, only: state_table_type
-   use steps, only: boundary_type, step_type
+   use steps, only: boundary_type, solves_mechanics, step_type
    use simulation, only: make_initial_state, simulation_type
    implicit none
    private
@@ -83,7 +83,7 @@ contains
       if (allocated(error)) return
       associate (run => self%run, number => simulation%control%step)
          call enter_step(self, number)
-         call order_as_run(self, simulation%bodies)
+         if (self%model%solver == model%solver) call order_as_run(self, simulation%bodies)
          call run%reduce(self%model, error)
          if (allocated(error)) return
          call run%loads%move_to(end_of_step(self%model%steps, number), self%model)
@@ -275,6 +275,8 @@ contains
       call divide_model(self%model, self%division)
       call hold_new_nodes(self%division, self%model)
       call keep_to_equations(self%division, self%model)
+      if (model%has_solver_by_size) self%model%solver = default_solver(merge(2.0_dp, 1.0_dp, &
+         any(solves_mechanics(model%steps%analysis)))*self%division%nodes_after)
       allocate (self%run)
    end subroutine divide_elements
 

@@ -468,6 +468,7 @@ contains
       own%scatter = own%total
       own%iteration = own%total
       allocate (own%no_estimate(size(values)), source=no_reason)
+      allocate (own%at_end(size(values)), source=0.0_dp)
    end subroutine clear
 
    !> Gives a value its uncertainty, or the reason why it has none; one that is not there has none.
@@ -479,6 +480,7 @@ contains
 
       if (ieee_is_nan(own%value(q))) return
       own%no_estimate(q) = reason
+      if (reason == of_path .and. .not. ieee_is_nan(sum(parts))) own%at_end(q) = sum(parts)
       if (reason /= no_reason) return
       own%change(q) = parts(1)
       own%scatter(q) = parts(2)

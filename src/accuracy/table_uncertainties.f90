@@ -1,7 +1,8 @@
-!> Uncertainties of the numbers that tables print, node by node and contact point by contact point,
-!> from a finer run. At one place a change may vanish by chance, so that those round it count with
-!> it: the mean squares over the nodes of each element there, or over three contact points in a row.
-!> Forces and heat of single nodes change with the mesh; their sums do not.
+!> Uncertainties of pre-tensions, and of the numbers that tables print, node by node and contact
+!> point by contact point, from a finer run. At one place a change may vanish by chance, so that
+!> those round it count with it: the mean squares over the nodes of each element there, or over
+!> three contact points in a row. Forces and heat of single nodes change with the mesh; their sums
+!> do not.
 module table_uncertainties
    use, intrinsic :: ieee_arithmetic, only: ieee_quiet_nan, ieee_value
    use contact_points, only: contact_points_type
@@ -32,6 +33,8 @@ contains
       type(contact_points_type), allocatable :: finer(:), points(:)
       integer :: i
 
+      if (allocated(record%pre_tension)) record%pre_tension_uncertainties = total('pre_tension', &
+         divided%record%pre_tension - record%pre_tension, record%pre_tension, iteration)
       associate (step => model%steps(record%step), mesh => model%mesh, fine => divided%model%mesh)
          if (allocated(step%node_prints)) then
             record%field_uncertainties = fields_of(divided, simulation, mesh, iteration, &

@@ -4,8 +4,10 @@
 !> that alone does not tell what is requested, of the whole run (ERRORS=FULL). Increments are halved
 !> where a finer mesh brought little. Where a quantity has none for another reason, every round
 !> divides both faces, and the last two changes from round to round tell it by the same rule: one
-!> change can be small by chance. A pressure that has no limit has none whatever the changes are;
-!> where it is at a corner, no round is spent on it.
+!> change can be small by chance. Of a peak pressure with friction the last increment tells a part,
+!> by which meshes are refined; the change from the round before, which has the path in it, adds the
+!> rest. A pressure that has no limit has none whatever the changes are; where it is at a corner, no
+!> round is spent on it.
 module accuracy_rounds
    use, intrinsic :: ieee_arithmetic, only: ieee_is_nan, ieee_quiet_nan, ieee_value
    use accuracy_targets, only: accuracy_request_type
@@ -22,13 +24,18 @@ module accuracy_rounds
    use uncertainty_rule, only: uncertainty_parts
    implicit none
    private
-   public :: accuracy_rounds_type, accuracy_round_type, finding_type, needs_full
+   public :: accuracy_rounds_type, accuracy_round_type, finding_type, is_of_friction, &
+      needs_full
 
    !> Least scale of a value: parts of the largest one so far, and of those of other interfaces.
    real(dp), parameter :: early = 0.25_dp, beside_others = 0.01_dp
    !> Two rounds that leave more than this part of the excess are the last, from this round on.
    real(dp), parameter :: nearer = 0.7_dp
    integer, parameter :: least_rounds = 4
+   integer, parameter, public :: most_levels = 2   !! divisions of an element in one round
+   !> How many times smaller an error is where the elements in which it arises are divided: that of
+   !> a quantity goes as the square of that of the fields, which falls with the spacing.
+   real(dp), parameter, public :: by_division = 4.0_dp
 
    !> A target of one quantity of one interface.
    type :: demand_type
@@ -47,6 +54,8 @@ module accuracy_rounds
       real(dp) :: value = 0.0_dp           !! of the quantity
       real(dp) :: change = 0.0_dp          !! what the round changed it by
       real(dp) :: uncertainty = 0.0_dp     !! NaN: not known
+      !> That by the last increment alone where the path counts, too; 0: not known
+      real(dp) :: at_end = 0.0_dp
       real(dp) :: spacing = 0.0_dp         !! about an edge [length]
       !> Whether increments half as long are due: what a finer mesh did not bring
       logical :: is_of_increments = .false.
@@ -89,7 +98,9 @@ module accuracy_rounds
 
 contains
 
-   !> Whether a request is for what the last increment alone does not tell.
+   !> Whether a request is for what neither the last increment nor rounds tell: what builds up along
+   !> the path of a whole run, and with friction shear forces and edges of stick, in which errors of
+   !> increments may be the larger part.
    pure logical function needs_full(model)
       type(model_type), intent(in) :: model              !! with targets
       logical :: has_friction
@@ -102,9 +113,16 @@ contains
          has_friction = has_friction .or. brings_friction(model%steps(s)%changes)
       end do
       if (needs_full .or. .not. has_friction) return
-      needs_full = any([(estimated(find_quantity(estimated, model%accuracy%targets(i)%quantity))% &
-         follows_path, i=1, size(model%accuracy%targets))])
+      needs_full = any([(is_of_friction(model%accuracy%targets(i)%quantity), &
+         i=1, size(model%accuracy%targets))])
    end function needs_full
+
+   !> Whether friction decides a quantity.
+   pure logical function is_of_friction(quantity)
+      character(*), intent(in) :: quantity
+
+      is_of_friction = any(quantity == [character(24) :: 'edge_stick', 'shear_force'])
+   end function is_of_friction
 
    !> Begins a round; the first one takes what is requested, of one interface or of all.
    subroutine begin_round(self, request, interfaces, steps)
@@ -221,6 +239,7 @@ contains
          if (.not. finding%is_there) return
          finding%is_there = .not. is_end_of_face(estimated(q), points, finding%value)
          finding%uncertainty = errors%total(q)
+         if (allocated(errors%at_end)) finding%at_end = errors%at_end(q)
          finding%spacing = spacing_at(estimated(q), points, finding%value)
          finding%no_estimate = errors%no_estimate(q)
       end associate
@@ -232,7 +251,7 @@ contains
       type(quantity_type), intent(in) :: quantity
       integer, intent(in) :: d
       type(increment_record_type), intent(in) :: record   ! of an end of a step
-      real(dp) :: finer, parts(3)
+      real(dp) :: change, fall, finer, parts(3)
       integer :: n
 
       n = size(rounds)
@@ -248,11 +267,18 @@ contains
                nearer*before%uncertainty
             return
          end if
-         ! A change leads to the finer mesh, whose error is so many times smaller.
+         ! A change leads to the finer mesh, whose error is so many times smaller: as that by the
+         ! last increment fell, where it is known. A mesh of half the spacing would change the rest.
          finer = 2.0_dp**quantity%order
-         parts = uncertainty_parts(quantity, max(now%change, before%change/finer)/finer, 0.0_dp, &
-            now%spacing, 0.0_dp)
-         now%uncertainty = parts(1) + parts(2)
+         fall = finer
+         change = max(now%change, before%change/finer)
+         if (now%at_end > 0.0_dp .and. before%at_end > 0.0_dp) then
+            fall = min(max(finer, before%at_end/now%at_end), by_division**most_levels)
+            change = now%change
+         end if
+         parts = uncertainty_parts(quantity, change*(1.0_dp - 1.0_dp/finer)/(fall - 1.0_dp), &
+            0.0_dp, now%spacing, 0.0_dp)
+         now%uncertainty = max(parts(1) + parts(2), now%at_end)
          now%no_estimate = no_reason
       end associate
    end subroutine add_change
@@ -266,7 +292,9 @@ contains
       integer :: i, n
 
       n = size(rounds)
-      has_grown = n > 2 .and. ieee_is_nan(rounds(n)%findings(d, step)%uncertainty)
+      associate (finding => rounds(n)%findings(d, step))
+         has_grown = n > 2 .and. ieee_is_nan(finding%uncertainty) .and. finding%at_end <= 0.0_dp
+      end associate
       if (.not. has_grown) return
       growth = [(rounds(n - 2 + i)%findings(d, step)%value - &
          rounds(n - 3 + i)%findings(d, step)%value, i=1, 2)]

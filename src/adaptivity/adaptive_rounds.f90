@@ -10,7 +10,8 @@
 !> point force falls as 1/r, what an element cannot represent of it as 1/r^4.
 module adaptive_rounds
    use, intrinsic :: ieee_arithmetic, only: ieee_is_nan
-   use accuracy_rounds, only: accuracy_rounds_type, finding_type
+   use accuracy_rounds, only: accuracy_rounds_type, by_division, finding_type, is_of_friction, &
+      most_levels
    use clock, only: wall_seconds
    use contact_points, only: contact_points_type
    use contact_quantities, only: estimated
@@ -67,10 +68,8 @@ module adaptive_rounds
    end interface
 
    real(dp), parameter :: marked = 0.8_dp       !! part of the squared error that is marked
-   real(dp), parameter :: far = 16.0_dp  !! uncertainty over target that takes two divisions
    real(dp), parameter :: part = 0.4_dp         !! of a target that the resolution of edges may take
    real(dp), parameter :: reach = 0.5_dp        !! of the contact length: where influence falls
-   integer, parameter :: most_levels = 2        !! divisions at an edge in one round
 
    !> Demands at the ends of the steps of a round.
    type :: round_indicators_type
@@ -189,7 +188,7 @@ contains
       type(increment_record_type), intent(in) :: record
       type(finding_type) :: finding
       real(dp), allocatable :: edges(:)
-      real(dp) :: length, weight(size(self%division%levels))
+      real(dp) :: length, uncertainty, weight(size(self%division%levels))
       logical :: at_faces(size(self%division%levels))
       integer :: d, levels, of_edges
 
@@ -197,24 +196,25 @@ contains
          finding = rounds%rounds(size(rounds%rounds))%findings(d, record%step)
          if (finding%is_met() .or. finding%no_estimate == at_corner) cycle
          if (finding%is_of_increments) self%halvings = 1
-         levels = 1
-         if (.not. ieee_is_nan(finding%uncertainty)) levels = merge(2, 1, finding%uncertainty > &
-            far*finding%allowed)
+         uncertainty = finding%uncertainty
+         if (ieee_is_nan(uncertainty)) uncertainty = finding%at_end
          associate (i => rounds%demands(d)%interface, q => rounds%demands(d)%quantity, &
             of_elements => self%division%levels)
             at_faces = elements_at_surfaces(model%mesh, [model%contacts(i)%slave, &
                model%contacts(i)%master])
+            ! More than two rounds of one division bring is due at once.
+            levels = 1
+            if (uncertainty > by_division**most_levels*finding%allowed) levels = most_levels
             ! Where the last increment alone tells no error, the change by sides of half the size
             ! does. Where sides of two lengths meet, pressures of linear elements alternate.
-            if (ieee_is_nan(record%uncertainties(i)%total(q)) .or. &
-               estimated(q)%name == 'peak_pressure' .and. &
+            if (ieee_is_nan(record%uncertainties(i)%total(q)) .and. finding%at_end <= 0.0_dp &
+               .or. estimated(q)%name == 'peak_pressure' .and. &
                any(at_faces .and. side_node_count(model%mesh%element_kind) == 2)) then
                where (at_faces) of_elements = max(of_elements, levels)
             end if
             ! Edges near which it errs: those of stick only for what friction decides.
             edges = record%contacts(i)%edges_contact
-            if (any([character(24) :: 'edge_stick', 'shear_force'] == estimated(q)%name)) edges = &
-               [edges, record%contacts(i)%edges_stick]
+            if (is_of_friction(estimated(q)%name)) edges = [edges, record%contacts(i)%edges_stick]
             ! How often the sides at an edge must be divided for its resolution.
             length = estimated(q)%resolution*spacing_at(estimated(q), interfaces(i), &
                record%uncertainties(i)%value(q))

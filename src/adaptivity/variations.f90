@@ -74,7 +74,8 @@ contains
       if (allocated(error)) return
       call apply_transforms(model)
       call find_bodies(model%mesh)
-      if (model%solver == solver_by_size) call choose_solver(model)
+      model%has_solver_by_size = model%solver == solver_by_size
+      if (model%has_solver_by_size) call choose_solver(model)
    end subroutine vary
 
    !> Order of the elements of a variation.

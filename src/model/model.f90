@@ -94,6 +94,7 @@ module model
       type(unit_labels_type) :: units                            !! labels of units
       type(physical_constants_type) :: constants                 !! *PHYSICAL CONSTANTS
       integer :: solver = solver_skyline                         !! one of the solver_* constants
+      logical :: has_solver_by_size = .false.                    !! whether its size chose it
       integer :: tail = tail_by_size                             !! one of the tail_* constants
       integer :: uncertainty = uncertainty_last !! one of the uncertainty_* constants
       type(accuracy_request_type) :: accuracy                    !! *ACCURACY

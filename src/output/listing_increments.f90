@@ -11,8 +11,8 @@ module listing_increments
    use kinds, only: dp
    use listing_text, only: column, in_columns, page_type, to_right, zone_counts
    use mesh, only: mesh_type
-   use no_estimates, only: no_reason, words_of_reason
-   use model, only: model_type
+   use no_estimates, only: mark_of, no_reason, not_on_finer_mesh, words_of_reason
+   use model, only: model_type, uncertainty_full
    use quantity_types, only: needs_coupling, needs_dilatation, needs_friction_heat, &
       needs_heat, needs_mechanics, &
       needs_branch, needs_nothing, needs_storage, &
@@ -193,8 +193,14 @@ contains
          '   heat of friction less work of the drive '//trim(adjustl(column(record%drive_excess, &
          9, 2)))//' of it')
       if (allocated(record%pre_tension)) then
-         if (size(record%pre_tension) > 0) call page%line('   pre-tension'// &
-            in_columns(record%pre_tension, 14, 6))
+         if (size(record%pre_tension) > 0) then
+            call page%line('   pre-tension'//in_columns(record%pre_tension, 14, 6))
+            if (allocated(record%pre_tension_uncertainties)) then
+               call page%line('   uncertainty'//in_columns(record%pre_tension_uncertainties, 14, 6))
+            else if (model%uncertainty == uncertainty_full) then
+               call page%line('   uncertainty'//mark_of(not_on_finer_mesh))
+            end if
+         end if
       end if
       if (allocated(record%along_z)) then
          do i = 1, size(record%along_z, 2)

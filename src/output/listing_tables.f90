@@ -6,7 +6,8 @@ module listing_tables
    use increment_quantities, only: pass_value
    use kinds, only: dp
    use listing_text, only: column, in_columns, page_type, table_heads, table_row, to_right
-   use model, only: model_type, verify_type
+   use model, only: model_type, uncertainty_full, verify_type
+   use no_estimates, only: mark_of, of_points
    use quantity_types, only: of_contact_points, of_passes, quantity_type
    use records, only: contact_record_type
    use reported_quantities, only: quantities
@@ -146,8 +147,14 @@ contains
 
       title = '   '
       if (table%has_uncertainties) title = title//uncertainties_of
-      do i = 1, merge(0, size(table%absent), table%has_uncertainties)
-         call print_absence(page, '   NODES OF '//table%set, table%absent(i))
+      do i = 1, size(table%absent)
+         if (table%has_uncertainties) then
+            call page%line('')
+            call page%line(title//'NODES OF '//table%set//': '//trim(table%absent(i))// &
+               mark_of(of_points))
+         else
+            call print_absence(page, '   NODES OF '//table%set, table%absent(i))
+         end if
       end do
       rows(0)%value = node_head
       do i = 1, size(table%member)
@@ -190,6 +197,7 @@ contains
       do i = 1, size(table%absent)
          call print_absence(page, title, table%absent(i))
       end do
+      if (model%uncertainty == uncertainty_full) title = title//mark_of(of_points)
       rows(0)%value = point_head
       do i = 1, size(table%member)
          rows(i)%value = to_right(to_text(model%mesh%element_number(table%member(i))), 8)// &

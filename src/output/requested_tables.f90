@@ -58,7 +58,8 @@ module requested_tables
       integer, allocatable :: point(:)         !! (rows) number of the point in its element
       real(dp), allocatable :: position(:, :)  !! (2, rows) x, y; unallocated without values
       type(table_column_type), allocatable :: columns(:), totals(:)
-      character(5), allocatable :: absent(:)   !! keys of quantities that the increment has not
+      !> Keys of quantities that the increment has not, or that have no uncertainty
+      character(5), allocatable :: absent(:)
       integer, allocatable :: axes(:)          !! (rows) orientation of points along its axes, or 0
    end type requested_table_type
 
@@ -71,7 +72,7 @@ contains
       type(model_type), intent(in) :: model
       type(requested_table_type), allocatable, intent(out) :: tables(:)
       logical, allocatable :: nodes_due(:), elements_due(:)
-      integer :: i, n
+      integer :: i, k, n
 
       associate (step => model%steps(record%step))
          nodes_due = due_of(step%node_prints, record, model)
@@ -89,6 +90,9 @@ contains
             tables(n) = table_of_nodes(step%node_prints(i), model)
             call take_fields(step%node_prints(i), model, record%field_uncertainties, tables(n), &
                record%total_uncertainties(:, i))
+            associate (without => tables(n)%absent, none => tables(n - 1)%absent)
+               without = pack(without, [(all(without(k) /= none), k=1, size(without))])
+            end associate
          end do
          do i = 1, size(elements_due)
             if (.not. elements_due(i)) cycle

@@ -204,7 +204,8 @@ contains
       end do
       call append(lines, 'at '//when(self, or_blank(model%load_label))//':')
       if (allocated(self%folds)) call append(lines, 'the branch turns at load factor'// &
-         trim(merge('s', ' ', size(self%folds) > 1))//' '//listed(self%folds))
+         trim(merge('s', ' ', size(self%folds) > 1))//' '//listed(self%folds)// &
+         mark_of(reason_of_run(model)))
       if (has_many(size(interfaces))) then
          call add_largest(self, model, interfaces, lines)
       else

@@ -25,6 +25,8 @@ module records
       real(dp), allocatable :: scatter(:) !! by scatter over increments and places between nodes
       real(dp), allocatable :: iteration(:)    !! by what the fixed point has left
       integer, allocatable :: no_estimate(:)   !! why there is none, a reason of no_estimates
+      !> What the last increment alone tells of those that follow the path; 0 where it tells nothing
+      real(dp), allocatable :: at_end(:)
    end type uncertainty_type
 
    !> Those of the maxima of a body; arrays over `maxima` of field_quantities.
@@ -188,6 +190,7 @@ module records
       type(field_record_type), allocatable :: field_uncertainties
       !> (3, *NODE PRINT cards) of the sums of RF1, RF2 and RFL, likewise
       real(dp), allocatable :: total_uncertainties(:, :)
+      real(dp), allocatable :: pre_tension_uncertainties(:)          !! (sections) likewise
       type(contact_record_type), allocatable :: contact_uncertainties(:)   !! for *CONTACT PRINT
       !> Unallocated where the stress is.
       type(error_record_type) :: stress_error = error_record_type()

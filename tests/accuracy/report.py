@@ -27,7 +27,7 @@ How accurate results are, what more accuracy costs, and how another program comp
 | How often do they hold? | For 96 to 100 % of the decks and each kind of number, largest stresses 13 of 14; against independent solutions for 95 to 100 % | [Uncertainties judged](#uncertainties-judged-on-decks-drawn-afterwards) |
 | Where bodies yield or creep? | With `ERRORS=FULL` for 97 % of all numbers, for 85 % of displacements | [Uncertainties of bodies that yield or creep](#uncertainties-of-bodies-that-yield-or-creep) |
 | How accurate are the largest stress and temperature? | Their uncertainties are in the summary, away from singular corners, which are named | [Largest stress and temperature](#largest-stress-and-temperature) |
-| How do I get 1 %? | `thercon run DECK --accuracy 1%`; most decks take one to three rounds, with friction in 4 to 12 times the time | [Accuracy on request](#accuracy-on-request) |
+| How do I get 1 %? | `thercon run DECK --accuracy 1%`; most decks take one to three rounds, with friction at least two | [Accuracy on request](#accuracy-on-request) |
 | Node pairs or mortar points? | Keep the default, but use `PAIRING=SURFACES` on the faces of a crack whose force or heat counts | [Node pairs against mortar points](#node-pairs-against-mortar-points) |
 | Where is the mesh too coarse? | Where `stress_error` and `heat_flux_error` are large: both are true to about 20 % | [Estimated error of the mesh](#estimated-error-of-the-mesh) |
 | What should I spend time on? | On the mesh, at the contact faces first. Shorter increments help only the edge of stick | [Speed for accuracy](#speed-for-accuracy-measured) |

@@ -20,15 +20,15 @@ peak pressure and edge of contact are within P per cent ([\\*ACCURACY](deck/meth
 rules). Each round solves the deck from its beginning on a mesh refined where it errs most. True
 errors are those to the converged values, CPU seconds those of all rounds. "By hand" is the cheapest
 of six meshes whose true error is inside the target; choosing it takes the converged values. Requests
-of 1 % on 32 drawn decks were all reached, with true errors of at most 0.44 % and 98 to 100 % of the uncertainties right.
+of 1 % on 32 drawn decks were all reached, with true errors of at most 0.41 % and 97 to 100 % of the uncertainties right.
 """
 DETAILS = """
 `thercon run DECK --accuracy P%` solves in rounds until the uncertainties of normal force, heat rate, peak
 pressure and edge of contact are within P per cent ([\\*ACCURACY](deck/method.md#accuracy) has the rules, also where no
 uncertainty can be given). Each round solves the deck from its beginning, with elements divided where the
-recovered energy norm is large and round the edges of zones, the smaller the nearer. Where the last increment
-alone does not tell what is requested, as the peak pressure with friction, rounds use `ERRORS=FULL`, and take 4
-to 12 times as long.
+recovered energy norm is large and round the edges of zones, the smaller the nearer. Of the peak pressure with
+friction the last increment alone does not tell what builds up along the path: its uncertainty is at least that
+which the change from the round before gives, so that there are two rounds at least.
 
 True errors are those to the [converged values](#numerical-uncertainty), CPU seconds those of all rounds
 together. All start from the deck's mesh without \\*REFINE. "By hand" is the cheapest of six meshes without

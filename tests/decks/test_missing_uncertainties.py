@@ -74,11 +74,29 @@ def test_every_number_says_why_it_has_no_uncertainty(tmp_path, name):
 @pytest.mark.parametrize("name", [name for name in DECKS if DECKS[name][0] == PATH])
 def test_a_complete_finer_run_estimates_what_follows_a_path(tmp_path, name):
     result, printed = solved(tmp_path, name, "--errors", "full")
-    told = QUANTITY.findall(printed)
-    assert told and "path" not in printed + result.with_suffix(".lst").read_text()
+    told, listing = QUANTITY.findall(printed), result.with_suffix(".lst").read_text()
+    assert told and "path" not in printed + listing
+    pairs = re.findall(r"^   pre-tension +(\S+)\n   uncertainty +(\S+)$", listing, re.MULTILINE)
+    assert len(pairs) == listing.count("   pre-tension  ") and bool(pairs) == (name == "pre-tension")
+    # The force is prescribed in the first step alone.
+    assert all((float(number) < 1e-9) == (k == 0) for k, (_, number) in enumerate(pairs))
     for quantity, words in told:
         assert is_no_number(quantity, words) or words.startswith(" +- ") or (
             quantity == "peak pressure" and words.startswith(" (no estimate: at a corner)")), quantity
+
+
+def test_tables_of_points_and_forces_of_single_nodes_have_none(tmp_path):
+    """The finer mesh has other points, and other forces at its nodes; sums of these have one."""
+    fit = INPUT / "examples" / "press_fit.inp"
+    (tmp_path / "press_fit.mesh").write_text(fit.with_suffix(".mesh").read_text())
+    deck = copy_deck(fit, tmp_path / "press_fit.inp", (), {
+        "*END STEP": "*EL PRINT\nS\n*NODE PRINT, TOTALS=YES\nU, RF\n*END STEP"})
+    mark = " (no estimate: single points)\n"
+    assert run("run", deck, "--out", tmp_path, "--errors", "full").returncode == 0
+    listing = deck.with_suffix(".lst").read_text()
+    assert listing.count(mark) == 2
+    assert "INTEGRATION POINTS OF ALL" + mark in listing and "NODES OF ALL: RF" + mark in listing
+    assert "UNCERTAINTIES (95 %) OF TOTALS OF ALL" in listing
 
 
 @pytest.mark.parametrize("held", ["BODY.LEFT, 1, 2", "BODY.LEFT, 1"], ids=["clamped", "smooth"])
