@@ -20,6 +20,7 @@ module mortar_sides
       integer :: side_nodes = 2            !! nodes of a side, 2 or 3
       logical :: closed = .false.          !! whether the last side leads back to the first node
       real(dp) :: outward = 1.0_dp         !! 1 where the body is on the left of the line, else -1
+      logical :: leads = .false.           !! whether it is a master along which the slave slides
    end type face_line_type
 
    !> One side of the slave, with its nodes' normals.
