@@ -275,7 +275,8 @@ contains
          call run%bodies%wear_to(attempt%next%wear)
       end if
       if (.not. allocated(run%bodies%faces_at)) return
-      if (.not. attempt%data%is_corrected) call fill_bodies(run%bodies, attempt%trial_type)
+      call fill_bodies(run%bodies, run%heat_reductions(run%in_use), run%loads, attempt%trial_type)
+      call find_stored(run, model, attempt)
       attempt%next%faces_at = run%bodies%faces_at
       call check_slip(run%bodies, model, attempt%before, attempt%next, attempt%record, error)
    end subroutine end_turns
@@ -451,17 +452,27 @@ contains
          since = wall_seconds()
          call recover_fields(bodies, run%heat_reductions(run%in_use), run%loads, &
             attempt%before, attempt%trial_type)
-         if (step%is_transient) then
-            next%stored = data%equation%stored_rate(bodies%capacity, next%temperature)
-            associate (a => data%equation%scheme%a, b => data%equation%scheme%b)
-               if (allocated(data%friction%heat)) next%stored = next%stored - b(1)/a(1)* &
-                  nodal_friction_heat(bodies, data%friction%late_start( &
-                  attempt%before%friction_heat))
-            end associate
-         end if
+         call find_stored(run, model, attempt)
          run%seconds%recover = run%seconds%recover + (wall_seconds() - since)
       end associate
    end subroutine solve_fields
+
+   !> The rate of stored heat of a solution in real time.
+   subroutine find_stored(run, model, attempt)
+      type(simulation_type), intent(in) :: run
+      type(model_type), intent(in) :: model
+      type(attempt_type), intent(inout) :: attempt
+
+      if (.not. model%steps(run%control%step)%is_transient) return
+      associate (data => attempt%data, next => attempt%next)
+         next%stored = data%equation%stored_rate(run%bodies%capacity, next%temperature)
+         associate (a => data%equation%scheme%a, b => data%equation%scheme%b)
+            if (allocated(data%friction%heat)) next%stored = next%stored - b(1)/a(1)* &
+               nodal_friction_heat(run%bodies, data%friction%late_start( &
+               attempt%before%friction_heat))
+         end associate
+      end associate
+   end subroutine find_stored
 
    !> Which increment a record is of.
    subroutine begin_record(run, model, clock, record)
