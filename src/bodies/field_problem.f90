@@ -175,7 +175,8 @@ contains
       self%is_factored = .false.
       self%values = problem%values
       self%added = added
-      call check_finite(problem%matrix%value, 'matrices of the bodies', status_deck, error)
+      if (.not. has_pieces(self, problem, added)) call check_finite(problem%matrix%value, &
+         'matrices of the bodies', status_deck, error)
       if (allocated(error)) return
       if (allocated(problem%division%piece)) then
          call reduce_pieces(self, problem, added, solver_kind, error)
@@ -225,10 +226,7 @@ contains
       type(error_type), allocatable, intent(out) :: error
       type(sparse_matrix_type) :: kept
 
-      if (self%division == problem%division%version .and. self%kept_values == problem%values &
-         .and. allocated(self%kept%value)) then
-         if (same_values(self%kept_added, added)) return
-      end if
+      if (has_pieces(self, problem, added)) return
       associate (piece => problem%division%piece, kind => merge(solver_skyline, solver_kind, &
          problem%division%is_tail()))
          if (allocated(added%value)) then
@@ -254,6 +252,17 @@ contains
       self%factored = self%factored + 1
       self%is_factored = .not. allocated(error)
    end subroutine reduce_pieces
+
+   !> Whether the bodies are reduced to what pieces keep of them, for a solver.
+   pure logical function has_pieces(self, problem, added) result(has)
+      type(field_reduction_type), intent(in) :: self
+      type(field_problem_type), intent(in) :: problem
+      type(sparse_matrix_type), intent(in) :: added
+
+      has = self%division == problem%division%version .and. self%kept_values == problem%values &
+         .and. allocated(self%kept%value)
+      if (has) has = same_values(self%kept_added, added)
+   end function has_pieces
 
    !> Gives the matrix new values.
    subroutine set_matrix(self, matrix, apart)

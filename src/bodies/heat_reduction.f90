@@ -56,6 +56,8 @@ module heat_reduction
       procedure :: is_on_demand
       procedure :: is_divided
       procedure :: loads_of_tail
+      procedure :: has_tail_forces
+      procedure :: tail_forces
       procedure :: means_of_tail
       procedure :: conductors
    end type heat_reduction_type
@@ -248,7 +250,7 @@ contains
       real(dp), intent(in) :: on_tail(:, :)               !! (thermal tail, n) [temperature]
       real(dp) :: load(bodies%mechanical%map%tail, size(on_tail, 2))   !! (mechanical tail, n)
 
-      if (self%is_on_demand(bodies) .and. allocated(self%kept_load%value)) then
+      if (self%has_tail_forces(bodies)) then
          load = loads_by(self%kept_load, bodies, self%extended_to_kept(bodies%thermal, on_tail))
       else if (self%is_on_demand(bodies)) then
          load = loads_of_temperatures(bodies, self%extended(bodies%thermal, on_tail))
@@ -256,6 +258,28 @@ contains
          load = product_of(self%jump_load, on_tail)
       end if
    end function loads_of_tail
+
+   !> Whether forces on what pieces keep are known of the thermal tail, whose loads are formed as
+   !> they are asked for.
+   pure logical function has_tail_forces(self, bodies)
+      class(heat_reduction_type), intent(in) :: self
+      type(reduced_bodies_type), intent(in) :: bodies
+
+      has_tail_forces = self%is_on_demand(bodies) .and. allocated(self%kept_load%value)
+   end function has_tail_forces
+
+   !> These forces.
+   function tail_forces(self, bodies, on_tail) result(forces)
+      class(heat_reduction_type), intent(in) :: self
+      type(reduced_bodies_type), intent(in) :: bodies
+      real(dp), intent(in) :: on_tail(:)                  !! (thermal tail) [temperature]
+      real(dp) :: forces(bodies%mechanical%matrix%row_count)   !! (2 nodes) [force]
+
+      associate (kept => self%extended_to_kept(bodies%thermal, reshape(on_tail, &
+         [size(on_tail), 1])))
+         forces = self%kept_load%multiply(kept(:, 1))
+      end associate
+   end function tail_forces
 
    !> Mean temperatures of the faces that the thermal tail makes.
    function means_of_tail(self, bodies, on_tail) result(mean)

@@ -225,11 +225,10 @@ contains
       real(dp), intent(in) :: stiffness(:)            !! (links) k
       type(sparse_matrix_type) :: lower               !! (equations, equations) by rows
       type(sparse_matrix_type) :: rest
-      type(triplet_list_type) :: list
       real(dp), allocatable :: half(:, :), of_others(:, :), written_by(:, :), z(:, :)
       integer, allocatable :: unknown(:), written(:)
       logical, allocatable :: is_rest(:)
-      integer :: column_of(self%equations), i, j, k, place(matrix%row_count), q
+      integer :: column_of(self%equations), i, j, k, place(matrix%row_count), q, term
 
       associate (by => self%by_unknowns)
          written = pack([(i, i=1, by%count)], by%start(2:by%count + 1) - by%start(:by%count) > &
@@ -247,7 +246,10 @@ contains
             do k = matrix%row_start(i), matrix%row_start(i + 1) - 1
                j = matrix%column(k)
                is_rest(k) = place(i) == 0 .and. place(j) == 0
-               if (.not. is_rest(k)) column_of(by%value(by%start(j):by%start(j + 1) - 1)) = 1
+               if (is_rest(k)) cycle
+               do term = by%start(j), by%start(j + 1) - 1
+                  column_of(by%value(term)) = 1
+               end do
             end do
             rest%row_start(i + 1) = rest%row_start(i) + count(is_rest(matrix%row_start(i): &
                matrix%row_start(i + 1) - 1))
@@ -268,28 +270,61 @@ contains
                   half(q, place(j)) = 0.5_dp*matrix%value(k)
                   cycle
                end if
-               associate (columns => column_of(by%value(by%start(j):by%start(j + 1) - 1)))
-                  of_others(q, columns) = of_others(q, columns) + matrix%value(k)* &
-                     by%coefficient(by%start(j):by%start(j + 1) - 1)
-               end associate
+               do term = by%start(j), by%start(j + 1) - 1
+                  associate (entry => of_others(q, column_of(by%value(term))))
+                     entry = entry + matrix%value(k)*by%coefficient(term)
+                  end associate
+               end do
             end do
          end do
       end associate
       z = transposed_product(written_by, product_of(half, written_by) + of_others)
-      rest = self%transform(rest, stiffness)
-      call list%reserve(size(unknown)*(size(unknown) + 1)/2 + size(rest%value))
-      do i = 1, size(unknown)
-         do j = 1, i
-            call list%add(unknown(i), unknown(j), z(i, j) + z(j, i))
-         end do
-      end do
-      do i = 1, self%equations
-         do k = rest%row_start(i), rest%row_start(i + 1) - 1
-            call list%add(i, rest%column(k), rest%value(k))
-         end do
-      end do
-      lower = list%compress(self%equations, self%equations)
+      lower = with_full_part(self%transform(rest, stiffness), unknown, z)
    end function transform_kept
+
+   !> The lower triangle of a matrix, with a full part and its transpose added.
+   pure function with_full_part(lower, places, part) result(total)
+      type(sparse_matrix_type), intent(in) :: lower   ! columns ascend in each row
+      integer, intent(in) :: places(:)                ! (n) rows and columns of the part, ascending
+      real(dp), intent(in) :: part(:, :)              ! (n, n)
+      type(sparse_matrix_type) :: total
+      integer :: column, filled, i, k, n, next, of_lower, of_part
+
+      total%row_count = lower%row_count
+      total%column_count = lower%column_count
+      n = size(lower%value) + size(places)*(size(places) + 1)/2
+      allocate (total%row_start(lower%row_count + 1), total%column(n), total%value(n))
+      total%row_start(1) = 1
+      filled = 0
+      n = 1   ! next row of the part
+      do i = 1, lower%row_count
+         k = lower%row_start(i)
+         next = n + 1
+         if (n <= size(places)) next = merge(1, n + 1, places(n) == i)
+         do while (k < lower%row_start(i + 1) .or. next <= n)
+            of_lower = huge(of_lower)
+            if (k < lower%row_start(i + 1)) of_lower = lower%column(k)
+            of_part = huge(of_part)
+            if (next <= n) of_part = places(next)
+            column = min(of_lower, of_part)
+            filled = filled + 1
+            total%column(filled) = column
+            total%value(filled) = 0.0_dp
+            if (of_part == column) then
+               total%value(filled) = part(n, next) + part(next, n)
+               next = next + 1
+            end if
+            if (of_lower == column) then
+               total%value(filled) = total%value(filled) + lower%value(k)
+               k = k + 1
+            end if
+         end do
+         total%row_start(i + 1) = filled + 1
+         if (n <= size(places)) n = merge(n + 1, n, places(n) == i)
+      end do
+      total%column = total%column(:filled)
+      total%value = total%value(:filled)
+   end function with_full_part
 
    !> T, its columns in any order.
    pure function terms(self)

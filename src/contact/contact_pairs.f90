@@ -82,6 +82,7 @@ contains
          master_surface => mesh%surfaces(definition%master))
          points%name = definition%name
          points%about_axis = mesh%element_plane(slave_surface%faces(1, 1)) == axisymmetric
+         points%follows_sliding = definition%follows_sliding
          points%to_end = [huge(1.0_dp), huge(1.0_dp)]
          points%at_corner = [.false., .false.]
          if (allocated(master_surface%drawing)) then

@@ -45,7 +45,7 @@ contains
       type(surface_chain_type), intent(in) :: master
       type(other_chains_type), intent(in) :: others   !! lines beside these two
       real(dp), intent(in) :: thickness               !! not used about an axis [length]
-      type(contact_points_type), intent(inout) :: points !! its name and its axis are set
+      type(contact_points_type), intent(inout) :: points !! its name, axis and sliding are set
       type(mortar_integrals_type) :: integrals
       type(face_line_type) :: slave_line, master_line
       type(slave_side_type), allocatable :: side(:)
@@ -54,6 +54,7 @@ contains
 
       slave_line = line_of(slave)
       master_line = line_of(master)
+      master_line%leads = points%follows_sliding
       side = sides_of(slave_line, master_line)
       do c = 1, size(others%masters)
          call hide_segments(side, master_line, line_of(others%masters(c)), .true.)

@@ -9,12 +9,14 @@
 !> averaged ones of the slave's nodes.
 !> The contact conditions of a corner act along the normal midway between those of both faces there.
 !> Along the slave's own normal, part of the normal force would count as friction, and exchanging
-!> slave and master would change it.
+!> slave and master would change it. Where the slave slides along the master by any distance (the
+!> master leads it) normals are the master's alone: slip goes along the master, and along any other
+!> normal the pressure would do work on it.
 !> With N and M the shape functions of slave and master, dA the area of the face midway between both
 !>
 !>    w_c = integral phi_c dA,  D_ci = integral phi_c N_i dA,  M_cj = integral phi_c M_j dA,
 !>
-!> and the same D and M times the normal n(xi) midway between both faces. With the normal of the
+!> and the same D and M times this normal n(xi) between both faces. With the normal of the
 !> corner in its place, the mean gap of faces that move apart along their radius would be too small
 !> by h^2/12 on sides that turn by the angle h, and the force too: press fits would err by h^2/6.
 !>
@@ -53,7 +55,7 @@ module mortar_segments
       !> (2, corners) where the hat function is 1: the corner, or the end of the cover [length]
       real(dp), allocatable :: position(:, :)
       real(dp), allocatable :: beyond(:)   !! (corners) how far along the line it lies from there
-      !> (2, corners) unit normal midway between those of both faces, outward from the slave
+      !> (2, corners) unit normal of both faces, outward from the slave
       real(dp), allocatable :: normal(:, :)
       type(sparse_matrix_type) :: slave    !! (corners, nodes of the slave) D [length^2]
       type(sparse_matrix_type) :: master   !! (corners, nodes of the master) M [length^2]
@@ -174,7 +176,7 @@ contains
       real(dp), intent(in) :: master_normal(:, :)  ! (2, nodes)
       real(dp), intent(in) :: section         ! thickness, 0 about an axis [length]
       type(segment_sums_type), intent(inout) :: sums
-      real(dp) :: area, ends(2), eta, factor(0:2), hat(2), radius, xi
+      real(dp) :: area, ends(2), eta, factor(0:2), hat(2), normals(2, 2), radius, xi
       real(dp) :: psi(size(side%nodes)), psi_master(master%side_nodes)
       real(dp) :: of_slave(2, size(psi), 0:2), of_master(2, size(psi_master), 0:2)
       integer :: facing(master%side_nodes), g, i, k
@@ -202,8 +204,10 @@ contains
          if (side%opposite(segment) == 0) cycle
          hat = hats(side, xi)
          sums%weight(side%corners) = sums%weight(side%corners) + area*hat
-         factor = [1.0_dp, midway(matmul(side%normal, psi), &
-            matmul(master_normal(:, facing), psi_master))]
+         normals(:, 1) = matmul(side%normal, psi)
+         normals(:, 2) = matmul(master_normal(:, facing), psi_master)
+         if (master%leads) normals(:, 1) = -normals(:, 2)
+         factor = [1.0_dp, midway(normals(:, 1), normals(:, 2))]
          do k = 0, 2
             do i = 1, size(psi)
                of_slave(:, i, k) = of_slave(:, i, k) + factor(k)*area*hat*psi(i)
@@ -218,15 +222,17 @@ contains
          call sums%slave(k)%add_block(side%corners, side%nodes, of_slave(:, :, k))
          call sums%master(k)%add_block(side%corners, facing, of_master(:, :, k))
       end do
-      call find_positions(side, segment, master%x(:, facing), master_normal(:, facing), sums)
+      call find_positions(side, segment, master%x(:, facing), master_normal(:, facing), &
+         master%leads, sums)
    end subroutine add_segment
 
    !> Where the hats of a side's corners are 1, and the normals there, if this segment lies nearer
    !> to the corner than those before.
-   pure subroutine find_positions(side, segment, x, master_normal, sums)
+   pure subroutine find_positions(side, segment, x, master_normal, leads, sums)
       type(slave_side_type), intent(in) :: side
       integer, intent(in) :: segment
       real(dp), intent(in) :: x(:, :), master_normal(:, :)  ! (2, nodes) of the side opposite
+      logical, intent(in) :: leads                          ! whether its normals count alone
       type(segment_sums_type), intent(inout) :: sums
       real(dp) :: eta, from, normal(2), xi
       integer :: c
@@ -244,6 +250,7 @@ contains
             eta = 0.0_dp
             call project(side, xi, x, eta)
             sums%facing(:, corner) = matmul(master_normal, side_shape(size(x, 2), eta))
+            if (leads) sums%normal(:, corner) = -sums%facing(:, corner)
          end associate
       end do
    end subroutine find_positions

@@ -20,6 +20,7 @@ module mortar_sides
       integer :: side_nodes = 2            !! nodes of a side, 2 or 3
       logical :: closed = .false.          !! whether the last side leads back to the first node
       real(dp) :: outward = 1.0_dp         !! 1 where the body is on the left of the line, else -1
+      logical :: leads = .false.           !! whether it is a master along which the slave slides
    end type face_line_type
 
    !> One side of the slave, with its nodes' normals.
@@ -227,11 +228,20 @@ contains
       real(dp), intent(in) :: psi(:)          !! shape functions at the point of the side
       real(dp), intent(in) :: x(:, :)         !! (2, n) the points [length]
       real(dp) :: beside(size(x, 2))          !! times the length of the normal
+      real(dp), dimension(2) :: normal, point
+      integer :: k
 
-      associate (first => side%x(:, 1))
-         beside = beside_line(matmul(side%normal, psi), matmul(side%x - spread(first, 2, &
-            size(psi)), psi), x - spread(first, 2, size(x, 2)))
-      end associate
+      ! The hottest place of faces that slide: without room for arrays.
+      normal = 0.0_dp
+      point = 0.0_dp
+      do k = 1, size(psi)
+         normal = normal + side%normal(:, k)*psi(k)
+         point = point + (side%x(:, k) - side%x(:, 1))*psi(k)
+      end do
+      do k = 1, size(x, 2)
+         beside(k) = normal(1)*(x(2, k) - side%x(2, 1) - point(2)) - normal(2)* &
+            (x(1, k) - side%x(1, 1) - point(1))
+      end do
    end function beside_normal
 
    !> Coordinate of a side whose normal meets a point, by the Illinois method: false position, in

@@ -133,6 +133,7 @@ contains
          points%arc_length = arc_lengths(points%position, n, closed)
          points%tangent = chain_tangents(points%position, n, closed)
          if (allocated(master%tangent)) then
+            if (points%follows_sliding) points%tangent = 0.0_dp
             points%tangent = points%tangent + master%tangent
          else
             points%tangent = points%tangent + chain_tangents(x(:, master%nodes), n, closed)

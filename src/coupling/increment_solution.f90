@@ -431,14 +431,11 @@ contains
          contact => bodies%equilibrium%contact)
          next%smallest_gap = min(before%smallest_gap, next%contact%gap)
          if (.not. solves_mechanics(data%analysis)) return
-         if (bodies%is_coupled) then
-            call add_jumps(bodies, heat, workspace%on_tail, next%temperature)
-            if (allocated(workspace%friction%heat)) next%temperature = next%temperature + &
-               heat%welded_response(bodies%thermal, nodal_friction_heat(bodies, &
-               workspace%friction%parts(2, :)*workspace%friction%heat))
-            data%force = bodies%equilibrium%load_of(bodies%mechanical, next%force_load + &
-               unstrained_forces(bodies, next%temperature - loads%temperature%rest, &
-               next%forces_beyond), loads%displacement%value)
+         if (only_places(bodies, heat, trial)) then
+            data%force%rhs(:, 1) = data%force%rhs(:, 1) + bodies%mechanical%map%restrict( &
+               heat%tail_forces(bodies, workspace%on_tail))
+         else if (bodies%is_coupled) then
+            call complete_temperatures(bodies, heat, loads, trial)
          end if
          allocate (on_tail(bodies%mechanical%map%tail))
          on_tail(contact%normal) = merge(next%contact%approach, &
@@ -449,19 +446,54 @@ contains
          end do
          on_tail(contact%link) = next%contact%link
          next%displacement = bodies%equilibrium%recover_kept(bodies%mechanical, data%force, on_tail)
-         ! A solution that only places faces that slide needs no more than these.
-         if (data%is_corrected .or. .not. allocated(bodies%faces_at)) call fill_bodies(bodies, &
-            trial)
+         if ((data%is_corrected .or. .not. allocated(bodies%faces_at)) .and. &
+            allocated(data%force%forces)) call bodies%equilibrium%pieces%fill( &
+            next%displacement, data%force%forces)
          next%stress_temperature = next%temperature
          call remember_slip(bodies, workspace%contact, before, next)
       end associate
    end subroutine recover_fields
 
-   !> Displacements inside of bodies that are divided, from those that were recovered.
-   subroutine fill_bodies(bodies, trial)
+   !> Whether a solution that only places faces that slide, and needs no values inside of bodies,
+   !> has the forces of its jumps without them.
+   pure logical function only_places(bodies, heat, trial)
       type(reduced_bodies_type), intent(in) :: bodies
-      type(trial_type), intent(inout) :: trial         !! with those of the nodes that pieces keep
+      type(heat_reduction_type), intent(in) :: heat
+      type(trial_type), intent(in) :: trial
 
+      only_places = bodies%is_coupled .and. allocated(bodies%faces_at) .and. .not. &
+         (trial%data%is_corrected .or. allocated(bodies%worn))
+      if (only_places) only_places = heat%has_tail_forces(bodies)
+   end function only_places
+
+   !> Temperatures that belong to the jumps of a solution, and the forces that they make.
+   subroutine complete_temperatures(bodies, heat, loads, trial)
+      type(reduced_bodies_type), intent(in) :: bodies
+      type(heat_reduction_type), intent(in) :: heat
+      type(loads_type), intent(in) :: loads
+      type(trial_type), intent(inout) :: trial         ! with the temperatures of welded contacts
+
+      associate (workspace => trial%workspace, next => trial%next)
+         call add_jumps(bodies, heat, workspace%on_tail, next%temperature)
+         if (allocated(workspace%friction%heat)) next%temperature = next%temperature + &
+            heat%welded_response(bodies%thermal, nodal_friction_heat(bodies, &
+            workspace%friction%parts(2, :)*workspace%friction%heat))
+         trial%data%force = bodies%equilibrium%load_of(bodies%mechanical, next%force_load + &
+            unstrained_forces(bodies, next%temperature - loads%temperature%rest, &
+            next%forces_beyond), loads%displacement%value)
+      end associate
+   end subroutine complete_temperatures
+
+   !> Values inside of bodies that are divided, of the last of the solutions that placed faces.
+   subroutine fill_bodies(bodies, heat, loads, trial)
+      type(reduced_bodies_type), intent(in) :: bodies
+      type(heat_reduction_type), intent(in) :: heat
+      type(loads_type), intent(in) :: loads            !! loads at the end
+      type(trial_type), intent(inout) :: trial         !! as recover_fields left it
+
+      if (trial%data%is_corrected) return
+      if (only_places(bodies, heat, trial)) call complete_temperatures(bodies, heat, loads, trial)
+      trial%next%stress_temperature = trial%next%temperature
       if (allocated(trial%data%force%forces)) call bodies%equilibrium%pieces%fill( &
          trial%next%displacement, trial%data%force%forces)
    end subroutine fill_bodies

@@ -39,6 +39,8 @@ module increment_attempts
    integer, parameter :: most_turns = 10   !! in which faces that slide or wear find their place
    real(dp), parameter :: same_place = 1.0e-6_dp     !! part of the spacing of contact points
    real(dp), parameter :: same_wear = 1.0e-9_dp      !! relative change of wear that is none
+   !> Tolerance on conductances while faces are still where they were placed an increment earlier
+   real(dp), parameter :: rough = 1.0e-4_dp
 
    !> The trial solution of an attempt, or of the stage that it has come to, and what it found.
    type, extends(trial_type) :: attempt_type
@@ -53,6 +55,8 @@ module increment_attempts
       real(dp), allocatable :: omega_start(:)
       !> (m) its laws of closing contact points, likewise
       type(closing_law_type), allocatable :: closing_start(:)
+      !> Whether the present solution only says where faces that slide go, to a rough tolerance
+      logical :: is_rough = .false.
    end type attempt_type
 
 contains
@@ -225,6 +229,8 @@ contains
       if (allocated(attempt%omega_start)) deallocate (attempt%omega_start)
       if (allocated(attempt%closing_start)) deallocate (attempt%closing_start)
       do turn = 1, most_turns
+         attempt%is_rough = turn == 1 .and. run%bodies%is_coupled .and. &
+            allocated(run%bodies%faces_at)
          call solve_corrected(run, model, attempt, error)
          if (allocated(error)) return
          if (.not. solves_mechanics(model%steps(run%control%step)%analysis)) return
@@ -233,7 +239,7 @@ contains
             run%bodies%displaced_by(attempt%next%displacement) <= same_place
          is_worn = .true.
          if (allocated(run%bodies%worn)) call follow_wear(run, attempt, is_worn)
-         if (is_placed .and. is_worn) then
+         if (is_placed .and. is_worn .and. .not. attempt%is_rough) then
             call end_turns(run, model, attempt, error)
             return
          end if
@@ -269,7 +275,8 @@ contains
          call run%bodies%wear_to(attempt%next%wear)
       end if
       if (.not. allocated(run%bodies%faces_at)) return
-      if (.not. attempt%data%is_corrected) call fill_bodies(run%bodies, attempt%trial_type)
+      call fill_bodies(run%bodies, run%heat_reductions(run%in_use), run%loads, attempt%trial_type)
+      call find_stored(run, model, attempt)
       attempt%next%faces_at = run%bodies%faces_at
       call check_slip(run%bodies, model, attempt%before, attempt%next, attempt%record, error)
    end subroutine end_turns
@@ -396,6 +403,7 @@ contains
          if (allocated(attempt%omega_start)) data%omega_start = attempt%omega_start
          if (allocated(attempt%closing_start)) data%closing_start = attempt%closing_start
          if (allocated(attempt%wear_by_pressure)) data%wear_by_pressure = attempt%wear_by_pressure
+         if (attempt%is_rough) data%fixed_point%tolerance = max(rough, data%fixed_point%tolerance)
          ! The last of several solutions is judged alone.
          data%fixed_point%finds_gain = data%fixed_point%finds_gain .and. .not. &
             solves_repeatedly(run)
@@ -444,17 +452,27 @@ contains
          since = wall_seconds()
          call recover_fields(bodies, run%heat_reductions(run%in_use), run%loads, &
             attempt%before, attempt%trial_type)
-         if (step%is_transient) then
-            next%stored = data%equation%stored_rate(bodies%capacity, next%temperature)
-            associate (a => data%equation%scheme%a, b => data%equation%scheme%b)
-               if (allocated(data%friction%heat)) next%stored = next%stored - b(1)/a(1)* &
-                  nodal_friction_heat(bodies, data%friction%late_start( &
-                  attempt%before%friction_heat))
-            end associate
-         end if
+         call find_stored(run, model, attempt)
          run%seconds%recover = run%seconds%recover + (wall_seconds() - since)
       end associate
    end subroutine solve_fields
+
+   !> The rate of stored heat of a solution in real time.
+   subroutine find_stored(run, model, attempt)
+      type(simulation_type), intent(in) :: run
+      type(model_type), intent(in) :: model
+      type(attempt_type), intent(inout) :: attempt
+
+      if (.not. model%steps(run%control%step)%is_transient) return
+      associate (data => attempt%data, next => attempt%next)
+         next%stored = data%equation%stored_rate(run%bodies%capacity, next%temperature)
+         associate (a => data%equation%scheme%a, b => data%equation%scheme%b)
+            if (allocated(data%friction%heat)) next%stored = next%stored - b(1)/a(1)* &
+               nodal_friction_heat(run%bodies, data%friction%late_start( &
+               attempt%before%friction_heat))
+         end associate
+      end associate
+   end subroutine find_stored
 
    !> Which increment a record is of.
    subroutine begin_record(run, model, clock, record)

@@ -91,7 +91,8 @@ contains
    end subroutine check_arrivals
 
    !> Compares the work that friction turns into heat with that of supports and loads, both as
-   !> rates: they differ by what bodies store. Only where faces slide in the plane.
+   !> rates: they differ by what bodies store and what their expansion does against stresses. Only
+   !> where faces slide in the plane.
    pure subroutine compare_with_drive(bodies, heat, velocity, record)
       type(reduced_bodies_type), intent(in) :: bodies         !! with contact points that are heated
       real(dp), intent(in) :: heat(:)                         !! (n) heat of friction [power]

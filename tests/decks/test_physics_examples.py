@@ -1,5 +1,6 @@
 """The examples pass their checks, and the values of these are those of tests/reference."""
 
+import re
 import subprocess
 import sys
 from functools import cache
@@ -338,6 +339,14 @@ def rail_pad():
     return {("heat_friction", "", "LAST"): 1e-3 * 0.3 * 2000.0 * 10.0,
             **{("NT", node, "LAST"): 20.0 + face_temperature(ahead, 10.0, 10.0, 0.3, *steel)
                for node, ahead in at.items()}}
+
+
+def test_friction_takes_the_work_of_the_drive_of_a_pad(solved):
+    """Once all slips; expansion makes 4e-4 of it: the rail lifts the pad as it gets warm."""
+    parts = re.findall(r"heat of friction less work of the drive +(\S+) of it",
+                       solved("rail_pad").with_suffix(".lst").read_text())
+    assert len(parts) == 64
+    assert max(abs(float(part)) for part in parts[1:]) < 1e-3
 
 
 PIN = {"radius": 10.0, "outside": 14.0, "overlap": 0.02, "young": 7e4, "poisson": 0.33, "mu": 0.1}

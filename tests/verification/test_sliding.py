@@ -21,6 +21,9 @@ SMOOTH = ["*SURFACE INTERACTION, NAME=SMOOTH"]
 STEEL = 2.1e5, 0.3
 MODULUS = STEEL[0] / (1 - STEEL[1] ** 2)
 WIDTH, DEPTH = 0.2, 20.0        # half the width of the contact of a roller; of the rail
+# Of a rigid roller: its contact strains the face by 1e-3, and displaced faces touch elsewhere than
+# Hertz's by as much.
+RADIUS = 50.0
 SPACINGS, PARTS = 10, 20        # of a slide, and its increments
 
 
@@ -63,19 +66,20 @@ def hertz_checks(force, middle, travel, side):
             Check(f"normal force, t = {time}", "normal_force", "FACE", force, 5e-3, when=f"{time}"),
             *(Check(f"pressure at {part:+} a, t = {time}", "pressure",
                     f"FACE@{place + part * WIDTH!r}", peak * sqrt(1 - part**2),
-                    1e-2 * peak, "ABS", when=f"{time}") for part in (-0.8, -0.5, 0.0, 0.5, 0.8)),
+                    1e-2, when=f"{time}") for part in (-0.8, -0.5, 0.0, 0.5, 0.8)),
             Check(f"edge of contact, t = {time}", "edge_contact", "FACE", place + WIDTH, side / 10,
                   "ABS", when=f"{time}")]
     return checks
 
 
 def rigid_roller(kind):
-    """Return a rigid roller of radius 5, the master, on a rail."""
+    """Return a rigid roller, the master, on a rail."""
     pairing, count = kind
-    side, radius = WIDTH / count, 5.0
-    force = pi * MODULUS * WIDTH**2 / 4 / radius
-    cards = [*rail(side), "*NODE", f"90001, 0., {radius!r}", "*SURFACE, NAME=ARC, TYPE=SEGMENTS",
-             "START, 3., 1.", "CIRCL, -3., 1., 0., 5.",
+    side = WIDTH / count
+    force = pi * MODULUS * WIDTH**2 / 4 / RADIUS
+    cards = [*rail(side), "*NODE", f"90001, 0., {RADIUS!r}", "*SURFACE, NAME=ARC, TYPE=SEGMENTS",
+             f"START, {0.28 * RADIUS!r}, {0.04 * RADIUS!r}",
+             f"CIRCL, {-0.28 * RADIUS!r}, {0.04 * RADIUS!r}, 0., {RADIUS!r}",
              "*RIGID BODY, REF NODE=90001, ANALYTICAL SURFACE=ARC", *material("RAIL", STEEL),
              *SMOOTH, "*CONTACT PAIR, INTERACTION=SMOOTH, NAME=FACE, SLIDING=FINITE, "
              f"PAIRING={pairing}", "RAIL.TOP, ARC", "*BOUNDARY", "RAIL.BOTTOM, 1, 2", "90001, 6",
@@ -97,14 +101,16 @@ def elastic_roller(kind):
         return x, low + y * (radius - low) / radius
 
     faces = ["ROLLER.BOTTOM", "RAIL.TOP"]
-    cards = [*rail(side), *mesh("ROLLER", across, graded(own, 1.2 * WIDTH, radius), "CPE4",
-                                first=100001, to=curved),
+    roller = mesh("ROLLER", across, graded(own, 1.2 * WIDTH, radius), "CPE4", first=100001, to=curved)
+    # A second node of its middle: without friction a round face turns freely about its centre.
+    middle = next(n for n, (x, y) in nodes_of(roller).items() if x == 0.0 and y > radius / 2)
+    cards = [*rail(side), *roller, "*NSET, NSET=ROLLER.DRIVEN", f"ROLLER.TOP, {middle}",
              *material("RAIL", STEEL), *material("ROLLER", STEEL), *SMOOTH,
              "*CONTACT PAIR, INTERACTION=SMOOTH, NAME=FACE, SLIDING=FINITE",
              ", ".join(faces if slave == "roller" else faces[::-1]), "*BOUNDARY",
              "RAIL.BOTTOM, 1, 2",
              *pressed_and_slid(["*DSLOAD", f"ROLLER.TOP, P, {force / 15.0!r}"], "ROLLER.TOP",
-                               "ROLLER.TOP", SPACINGS * side)]
+                               "ROLLER.DRIVEN", SPACINGS * side)]
     if slave == "rail":
         return cards, hertz_checks(force, DEPTH, SPACINGS * side, side)
     arc = [curved(x, 0.0) for x in across if x < own / 2]
@@ -204,10 +210,10 @@ def cases():
         width, then held at its depth and slid, without turning, by {SPACINGS} spacings in {PARTS}
         increments. t = 1.25 is 2.5 spacings."""
     hertz = "Hertz: a^2 = 4 P R/(pi E*), p = 2 P/(pi a) sqrt(1 - x^2/a^2)."
-    limits = "Force 0.5 %, pressures 1 % of the largest, the edge a tenth of a spacing."
+    limits = "Force 0.5 %, pressures 1 %, the edge a tenth of a spacing."
     return [
-        Case("Rigid roller slid along a rail", f"A rigid arc of radius 5, the master. {rollers}",
-             hertz, limits, [("NODES", 10), ("SURFACES", 24.4)], rigid_roller,
+        Case("Rigid roller slid along a rail", f"A rigid arc of radius {RADIUS:g}, the master. {rollers}",
+             hertz, limits, [("NODES", 20), ("SURFACES", 24.4)], rigid_roller,
              lambda kind: f"{kind[0]}, n = {kind[1]}", named="contact points"),
         Case("Elastic roller slid along a rail", f"""Half of a roller of radius 10 under a pressure
              at its plane face, nodes that do not match. {rollers}""", hertz, limits,
@@ -236,7 +242,7 @@ def draw(runs, path):
     """Draw the pressure under a roller and the temperature of a rail."""
     figure, (left, right) = subplots(1, 2, height=3.2)
     solved = runs["Rigid roller slid along a rail"][0]
-    side = WIDTH / 10
+    side = WIDTH / 20
     with h5py.File(solved.result) as file:
         times, face = file["history/time"][()], file["contact/FACE"]
         for time in (1.0, 1.5, 2.0):
@@ -244,7 +250,7 @@ def draw(runs, path):
             left.plot(face["x"][()], face["pressure"][k], "o", markersize=3, label=f"t = {time}")
             x = (time - 1.0) * SPACINGS * side + WIDTH * np.cos(np.linspace(0.0, pi, 61))
             middle = (time - 1.0) * SPACINGS * side
-            left.plot(x, MODULUS * WIDTH / 2 / 5.0 * np.sqrt(
+            left.plot(x, MODULUS * WIDTH / 2 / RADIUS * np.sqrt(
                 np.maximum(0.0, 1 - ((x - middle) / WIDTH) ** 2)), "k-", linewidth=0.8)
     left.set(xlim=(-1.5 * WIDTH, 2.5 * WIDTH), xlabel="x", ylabel="pressure",
              title="Rigid roller: points, and Hertz's lines")
