@@ -47,9 +47,9 @@ module reduced_bodies
       type(field_problem_type) :: mechanical                  !! equilibrium, (2.4)
       !> C of (1.2); without values where no step needs it [energy/temperature]
       type(sparse_matrix_type) :: capacity
-      !> C without melting, and the diagonal that this adds (nodes); unallocated where nothing melts
-      type(sparse_matrix_type) :: sensible
-      real(dp), allocatable :: melting(:)
+      !> (entries) of C without melting, and the diagonal that this adds (nodes); unallocated where
+      !> nothing melts
+      real(dp), allocatable :: sensible(:), melting(:)
       type(dilatation_type) :: dilatation                     !! heat that strains take up
       type(sparse_matrix_type) :: thermal_load                !! nodal forces per nodal temperature
       ! What springs and trusses have of the matrices of equilibrium; without values for none.
@@ -460,7 +460,7 @@ contains
          if (with_heat) call self%thermal%set_matrix(assemble_conduction(mesh, sections, points))
          if (any(model%steps%is_transient .or. model%steps%stability_frequency > 0)) then
             self%capacity = assemble_capacity(mesh, sections, capacities(model, temperature))
-            if (any(melts(materials))) self%sensible = self%capacity
+            if (any(melts(materials))) self%sensible = self%capacity%value
             if (allocated(self%melting)) call add_melting(self)
          end if
       end associate
@@ -512,8 +512,8 @@ contains
       type(reduced_bodies_type), intent(inout) :: self
       integer :: i, k
 
-      self%capacity = self%sensible
       associate (c => self%capacity)
+         c%value(:) = self%sensible
          do i = 1, size(self%melting)
             if (self%melting(i) <= 0.0_dp) cycle
             k = c%row_start(i) - 1 + findloc(c%column(c%row_start(i):c%row_start(i + 1) - 1), i, &

@@ -271,18 +271,18 @@ contains
       fraction = 1.0_dp - latent_content(material, temperature)/sum(material%melting%content)
    end function solid_fraction
 
-   !> Where a temperature gets to with a latent heat that it has not taken up: with rho c of the
-   !> first rows, the temperature that has the heat of both, and the latent heat that this is
+   !> Where a temperature gets to with a latent heat that it has not taken up: with a heat capacity
+   !> beside it, the temperature that has the heat of both, and the latent heat that this is
    !> within, or 0. An interval may be as narrow as temperatures round, so the heat says which.
-   pure subroutine melted_to(material, given, latent, temperature, row)
+   pure subroutine melted_to(material, capacity, given, latent, temperature, row)
       type(material_type), intent(in) :: material       !! that melts
+      real(dp), intent(in) :: capacity                  !! [energy/(volume temperature)]
       real(dp), intent(in) :: given                     !! [temperature]
       real(dp), intent(in) :: latent                    !! [energy/volume]
       real(dp), intent(out) :: temperature
       integer, intent(out) :: row
-      real(dp) :: capacity, content, taken_up
+      real(dp) :: content, taken_up
 
-      capacity = heat_capacity(material)
       taken_up = 0.0_dp
       do row = 1, size(material%melting)
          associate (melting => material%melting(row))

@@ -26,6 +26,7 @@ module increment_attempts
    use simulation, only: simulation_type
    use sliding_attempts, only: check_arrivals, check_slip, compare_with_drive
    use solution_state, only: solution_state_type
+   use sparse_matrix, only: linear_combination
    use steps, only: solves_heat, solves_mechanics
    use text, only: append, to_text
    use unconstrained_bodies, only: unconstrained_now
@@ -326,22 +327,24 @@ contains
       type(attempt_type), intent(inout) :: attempt
       type(error_type), allocatable, intent(out) :: error
       type(solved_loads_type), allocatable :: known(:)   ! before the stage
+      logical :: melts
 
-      if (run%corrections%melting%acts .and. attempt%stage%stores_heat) then
-         call run%corrections%melting%begin(model, attempt%before%temperature)
-         call run%bodies%set_melting(run%corrections%melting%slopes(model))
-      end if
-      call begin_trial(run, model, attempt, error)
-      if (allocated(error)) return
+      melts = run%corrections%melting%acts .and. attempt%stage%stores_heat
+      if (melts) call run%bodies%set_melting(0.0_dp*attempt%before%temperature)
+      call begin_trial(run, model, attempt)
       associate (corrections => run%corrections, step => model%steps(run%control%step))
          if (.not. corrections%corrects) then
-            call solve_fields(run, model, attempt, error)
+            call reduce_heat(run, model, attempt, error)
+            if (.not. allocated(error)) call solve_fields(run, model, attempt, error)
             return
          end if
          allocate (known(2))
          if (allocated(attempt%known)) known = attempt%known
          call corrections%begin(model, run%bodies, attempt%stage, attempt%before, &
             takes_past=abs(step%scheme%b(1)) > 0.0_dp)
+         if (melts) call foresee_melting(run, model, attempt)
+         call reduce_heat(run, model, attempt, error)
+         if (allocated(error)) return
          do
             call corrections%give(attempt%data%equation, attempt%next)
             call solve_fields(run, model, attempt, error)
@@ -352,7 +355,9 @@ contains
             attempt%known = known
             if (corrections%asks_operators .or. corrections%asks_capacity) then
                call renew_operators(run, model, attempt, error)
-               if (.not. allocated(error)) call begin_trial(run, model, attempt, error)
+               if (allocated(error)) return
+               call begin_trial(run, model, attempt)
+               call reduce_heat(run, model, attempt, error)
                if (allocated(error)) return
             end if
             call attempt%begin_again(attempt%before)
@@ -389,13 +394,38 @@ contains
       call set_error(error, status_no_convergence, 'bodies yield without resistance')
    end subroutine renew_operators
 
-   !> Begins the trial of a stage, with the reduction of heat that its equation asks for.
-   !> Errors: as reduce_heat.
-   subroutine begin_trial(run, model, attempt, error)
+   !> Foresees which nodes melt at the end of a stage, and gives C and corrections what they have.
+   subroutine foresee_melting(run, model, attempt)
+      type(simulation_type), intent(inout) :: run
+      type(model_type), intent(in) :: model
+      type(attempt_type), intent(inout) :: attempt           !! begun without melting
+      real(dp) :: rhs(size(attempt%before%temperature)), temperature(size(rhs))
+
+      associate (bodies => run%bodies, melting => run%corrections%melting, start => &
+         attempt%before%temperature, equation => attempt%data%equation, stage => attempt%stage, &
+         terms => run%bodies%thermal%map%by_unknowns%start)
+         call run%corrections%give(equation, attempt%next)
+         rhs = equation%history(bodies%thermal%matrix) + melting%contents(model, start)/ &
+            equation%duration
+         temperature = start
+         call melting%begin(model, attempt%before%stored*stage%size, temperature)
+         temperature = merge(run%loads%temperature%value, temperature, &
+            run%loads%temperature%active)
+         call melting%foresee(model, linear_combination(1.0_dp, bodies%thermal%matrix, 1.0_dp, &
+            equation%left_film(bodies%capacity)), rhs, equation%duration, &
+            terms(2:size(start) + 1) - terms(:size(start)) == 1, temperature)
+         call bodies%set_melting(melting%slopes(model))
+         call run%corrections%foresee_melting(model, bodies%melting, start)
+         call equation%hold_heat(bodies%capacity, stage%duration, stage%temperature, &
+            attempt%before%stored)
+      end associate
+   end subroutine foresee_melting
+
+   !> Begins the trial of a stage.
+   subroutine begin_trial(run, model, attempt)
       type(simulation_type), intent(inout) :: run
       type(model_type), intent(in) :: model
       type(attempt_type), intent(inout) :: attempt
-      type(error_type), allocatable, intent(out) :: error
 
       associate (step => model%steps(run%control%step), bodies => run%bodies, data => attempt%data)
          call begin_increment(bodies, step, attempt%before, attempt%trial_type)
@@ -419,10 +449,20 @@ contains
             data%omega_start = run%branch%point%omega
             data%fixed_point%method = method_newton
          end if
-         if (solves_heat(step%analysis)) call run%reduce_heat(model, data%equation%left_film( &
-            bodies%capacity), error)
       end associate
    end subroutine begin_trial
+
+   !> Reduces heat as the equation of a stage asks for.
+   !> Errors: as reduce_heat.
+   subroutine reduce_heat(run, model, attempt, error)
+      type(simulation_type), intent(inout) :: run
+      type(model_type), intent(in) :: model
+      type(attempt_type), intent(in) :: attempt
+      type(error_type), allocatable, intent(out) :: error
+
+      if (solves_heat(model%steps(run%control%step)%analysis)) call run%reduce_heat(model, &
+         attempt%data%equation%left_film(run%bodies%capacity), error)
+   end subroutine reduce_heat
 
    !> Solves the fields of a stage with the present corrections of its operators.
    subroutine solve_fields(run, model, attempt, error)

@@ -6,15 +6,17 @@
 !> a solution T of the content and slope that a node has at a temperature T' moves T' to the
 !> temperature that has the heat of T and of the content there by the slope. A node that cools below
 !> the liquidus thus stops in the interval until it has given off its latent heat. C has the slopes
-!> at T': within the interval that of the content, else none.
+!> at T': within the interval that of the content, else none. A stage begins with T' that are
+!> foreseen, so that most fronts are found by one solution.
 !>
 !> C. R. Swaminathan, V. R. Voller, Metall. Trans. B 23 (1992) 651.
 module melting
    use element_kinds, only: element_node_count
    use kinds, only: dp
-   use materials, only: heat_capacity, latent_content, melted_to, melting_row, melts, solid_fraction
+   use materials, only: heat_capacity, latent_content, melted_to, melts, solid_fraction
    use mesh, only: nodes_per_element
    use model, only: model_type
+   use sparse_matrix, only: sparse_matrix_type
    use thermal_matrix, only: lumped_volumes
    implicit none
    private
@@ -23,6 +25,9 @@ module melting
    !> Part of the largest latent content below which that of a rounded temperature has no meaning,
    !> where the interval is a part of it in which temperatures change
    real(dp), parameter :: rounding = 1.0e-13_dp
+
+   integer, parameter :: sweeps = 12             !! that foresee a front
+   real(dp), parameter :: resting = 2.0e-5_dp    !! part of a node's latent heat that moves none
 
    !> A node of a material that melts.
    type :: melting_node_type
@@ -42,6 +47,7 @@ module melting
    contains
       procedure :: prepare
       procedure :: begin
+      procedure :: foresee
       procedure :: move
       procedure :: slopes
       procedure :: contents
@@ -81,20 +87,81 @@ contains
       self%acts = size(self%nodes) > 0
    end subroutine prepare
 
-   !> Starts a stage at the temperatures at its start.
-   pure subroutine begin(self, model, temperature)
+   !> Starts a stage at the heat that nodes come to if it goes on changing as it does. A node at a
+   !> solidus or liquidus is within the interval, unless its heat leads out of it.
+   pure subroutine begin(self, model, heat, temperature)
       class(melting_type), intent(inout) :: self
       type(model_type), intent(in) :: model
-      real(dp), intent(in) :: temperature(:)                 !! (nodes)
+      real(dp), intent(in) :: heat(:)                        !! (nodes) that they gain so [energy]
+      real(dp), intent(inout) :: temperature(:)              !! (nodes) at its start, then foreseen
       integer :: i
 
       do i = 1, size(self%nodes)
          associate (node => self%nodes(i))
-            node%at = temperature(node%node)
-            node%row = melting_row(model%materials(node%material), node%at)
+            associate (material => model%materials(node%material), there => temperature(node%node))
+               call melted_to(material, heat_capacity(material), there + heat(node%node)/( &
+                  heat_capacity(material)*node%volume), latent_content(material, there), node%at, &
+                  node%row)
+               there = node%at
+            end associate
          end associate
       end do
    end subroutine begin
+
+   !> Foresees T' at the end of a stage by sweeps to and fro over the equation of heat without
+   !> melting, which solve the row of a node together with its latent heat (Gauss and Seidel). Nodes
+   !> whose neighbours stay rest.
+   pure subroutine foresee(self, model, matrix, rhs, duration, moves, temperature)
+      class(melting_type), intent(inout) :: self
+      type(model_type), intent(in) :: model
+      type(sparse_matrix_type), intent(in) :: matrix         !! (nodes, nodes) [power/temperature]
+      real(dp), intent(in) :: rhs(:)                         !! (nodes) beside L/duration [power]
+      real(dp), intent(in) :: duration                       !! [time]
+      logical, intent(in) :: moves(:)                        !! (nodes) those that are solved for
+      real(dp), intent(inout) :: temperature(:)              !! (nodes) from begin, then foreseen
+      real(dp) :: held(size(rhs)), left_over, own, small(size(rhs))
+      logical :: waits(size(rhs))
+      integer :: at(size(rhs)), i, k, l, sweep
+
+      at = 0
+      small = 0.0_dp
+      held = self%contents(model, temperature)/duration
+      do k = 1, size(self%nodes)
+         associate (node => self%nodes(k))
+            at(node%node) = k
+            small(node%node) = resting*node%volume*sum(model%materials(node%material)%melting% &
+               content)/duration
+         end associate
+      end do
+      waits = moves
+      do sweep = 1, sweeps
+         do k = 1, size(rhs)
+            i = merge(k, size(rhs) + 1 - k, modulo(sweep, 2) == 1)
+            if (.not. waits(i)) cycle
+            waits(i) = .false.
+            left_over = rhs(i) - held(i)
+            own = 0.0_dp
+            do l = matrix%row_start(i), matrix%row_start(i + 1) - 1
+               left_over = left_over - matrix%value(l)*temperature(matrix%column(l))
+               if (matrix%column(l) == i) own = matrix%value(l)
+            end do
+            if (abs(left_over) <= small(i)) cycle
+            associate (row => matrix%column(matrix%row_start(i):matrix%row_start(i + 1) - 1))
+               waits(row) = moves(row)
+            end associate
+            waits(i) = .false.
+            left_over = left_over + held(i) + own*temperature(i)
+            temperature(i) = left_over/own
+            if (at(i) == 0) cycle
+            associate (node => self%nodes(at(i)))
+               call melted_to(model%materials(node%material), own*duration/node%volume, &
+                  temperature(i), 0.0_dp, node%at, node%row)
+               temperature(i) = node%at
+               held(i) = left_over - own*node%at
+            end associate
+         end do
+      end do
+   end subroutine foresee
 
    !> Moves T' to a solution.
    pure subroutine move(self, model, temperature)
@@ -116,7 +183,7 @@ contains
                   cycle
                end if
                self%jumps = .true.
-               call melted_to(material, there, content, node%at, row)
+               call melted_to(material, heat_capacity(material), there, content, node%at, row)
                self%changes_rows = self%changes_rows .or. row /= node%row
                node%row = row
             end associate

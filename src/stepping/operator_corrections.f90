@@ -86,6 +86,7 @@ module operator_corrections
       procedure :: give
       procedure :: correct
       procedure :: renew
+      procedure :: foresee_melting
       procedure :: heat_beyond
       procedure :: true_contents
       procedure :: keep
@@ -331,6 +332,20 @@ contains
             self%stage%duration
       end associate
    end subroutine lead_melting
+
+   !> Gives corrections that a stage begins with without melting the slopes that it has foreseen.
+   subroutine foresee_melting(self, model, slopes, temperature)
+      class(corrections_type), intent(inout) :: self
+      type(model_type), intent(in) :: model
+      real(dp), intent(in) :: slopes(:)                      !! (nodes) [energy/temperature]
+      real(dp), intent(in) :: temperature(:)                 !! (nodes) at its start
+
+      associate (n => size(temperature))
+         self%values(:n) = self%values(:n) - slopes*(temperature - self%stage%temperature)/ &
+            self%stage%duration
+      end associate
+      call lead_melting(self, model, temperature)
+   end subroutine foresee_melting
 
    !> Goes on with operators, or C alone, that were formed at a solution.
    subroutine renew(self, model, bodies, before, at)

@@ -76,6 +76,18 @@ def test_heat_that_leaves_is_what_a_front_gives_off(tmp_path, kind):
     assert "the smallest interval is 1e-4 of latent over specific heat" in listing
 
 
+def test_a_front_that_is_foreseen_needs_one_solution_a_stage(tmp_path):
+    """Nodes enter and leave the interval in nearly every increment."""
+    cards = [*melting(["1., 0.99, 1."], size=12), *start(1.0), *step(
+        "*BOUNDARY", "BODY.LEFT, 11, 11, 0.", "BODY.BOTTOM, 11, 11, 0.", times="0.002, 0.2")]
+    process = run("run", "--quiet", write(tmp_path / "front.inp", cards), "--out", tmp_path)
+    assert process.returncode == 0, process.stderr
+    passes = [int(count) for count in re.findall(r"^ +corrections (\d+)", (
+        tmp_path / "front.lst").read_text(), re.MULTILINE)]
+    assert len(passes) == 100
+    assert sum(passes) < 110
+
+
 def test_tables_of_nodes_have_the_solid_fraction(tmp_path):
     """Half of the latent heat is given off after 1."""
     cards = [*melting(["10., 20., 30."], size=1), *start(30.0), *step(
