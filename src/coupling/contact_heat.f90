@@ -15,6 +15,7 @@ module contact_heat
    use conductance_laws, only: conductance
    use dense, only: lu_type, product_of
    use errors, only: check_finite, error_type, set_error, status_no_convergence
+   use gmres, only: gmres_type
    use heat_equation, only: heat_across
    use heat_reduction, only: heat_reduction_type
    use increment_data, only: increment_data_type, increment_workspace_type
@@ -27,7 +28,7 @@ module contact_heat
    private
    public :: jump_derivatives_type, temperature_jumps, jump_derivatives, heat_by_omega, &
       take_temperatures, settle_conductance, at_own_temperatures, derivative_by_temperature, &
-      changes_by_temperature, changes_by_faces
+      changes_by_temperature, changes_by_faces, tail_of_heats, with_temperatures
 
    !> How the unknowns of the tail follow the conductance of each contact point that carries heat.
    type :: jump_derivatives_type
@@ -44,6 +45,8 @@ module contact_heat
    real(dp), parameter :: rounding = 1.0e-13_dp      !! relative change of omega that is none
    real(dp), parameter :: converged = 1.0e-10_dp     !! the same, where it falls no more
    real(dp), parameter :: shortest = 1.0e-3_dp       !! part of a step below which none is tried
+   integer, parameter :: most_products = 200         !! for one step
+   real(dp), parameter :: solved = 1.0e-12_dp        !! residual of a step by products, relative
 
 contains
 
@@ -175,6 +178,44 @@ contains
       where (bodies%jump_index == 0) heat = 0.0_dp
    end function heat_by_omega
 
+   !> Unknowns of the thermal tail with heats at the contact points, by the factors of the last pass.
+   function tail_of_heats(bodies, workspace, heats) result(of_tail)
+      type(reduced_bodies_type), intent(in) :: bodies
+      type(increment_workspace_type), intent(in) :: workspace  !! as the last pass left it
+      real(dp), intent(in) :: heats(:)                        !! (m)
+      real(dp) :: of_tail(bodies%thermal%map%tail, 1)
+      integer :: k
+
+      of_tail = 0.0_dp
+      do k = 1, size(heats)
+         if (bodies%jump_index(k) > 0) of_tail(bodies%jump_index(k), 1) = heats(k)
+      end do
+      call workspace%tail%solve_columns(of_tail)
+   end function tail_of_heats
+
+   !> Changes of the conductances with the laws' own changes dW: domega = dW + (dW/domega) domega.
+   function with_temperatures(bodies, heat, workspace, coordinate, rate, change) result(of_omega)
+      type(reduced_bodies_type), intent(in) :: bodies
+      type(heat_reduction_type), intent(in) :: heat
+      type(increment_workspace_type), intent(in) :: workspace  !! as the last pass left it
+      real(dp), intent(in) :: coordinate(:)                    !! (m) z [length]
+      real(dp), intent(in) :: rate(:)                          !! (m) as from heat_by_omega
+      real(dp), intent(in) :: change(:)                        !! (m) dW
+      real(dp) :: of_omega(size(change))
+      type(gmres_type) :: gmres
+
+      of_omega = change
+      if (.not. bodies%points%vary_with_temperature()) return
+      call gmres%begin(change, solved, min(size(change), most_products))
+      do while (gmres%wants_product)
+         associate (v => gmres%vector, by_temperature => changes_by_temperature(bodies, heat, &
+            workspace, coordinate, tail_of_heats(bodies, workspace, rate*gmres%vector)))
+            call gmres%take(v - by_temperature(:, 1))
+         end associate
+      end do
+      of_omega = gmres%solution()
+   end function with_temperatures
+
    !> Temperatures of the faces with given jumps, and the laws at these.
    subroutine take_temperatures(bodies, heat, data, jump, workspace)
       type(reduced_bodies_type), intent(in) :: bodies
@@ -241,7 +282,11 @@ contains
             step = min(max(step, -longest_step), longest_step)
             last = residual
          else if (residual < last .or. part < shortest .or. has_mixed) then
-            step = newton_step(bodies, heat, data, workspace, jump, wanted)
+            if (heat%schur%is_sparse()) then
+               step = step_by_products(bodies, heat, data, workspace, jump, wanted)
+            else
+               step = newton_step(bodies, heat, data, workspace, jump, wanted)
+            end if
             base = workspace%pass%omega
             last = residual
             part = 1.0_dp
@@ -308,6 +353,30 @@ contains
       if (.not. singular) call lu%solve(rest)
       step = min(max(rest(:, 1), -longest_step), longest_step)
    end function newton_step
+
+   !> The same step where no matrix between all contact points is formed.
+   function step_by_products(bodies, heat, data, workspace, jump, wanted) result(step)
+      type(reduced_bodies_type), intent(in) :: bodies
+      type(heat_reduction_type), intent(in) :: heat
+      type(increment_data_type), intent(in) :: data
+      type(increment_workspace_type), intent(in) :: workspace
+      real(dp), intent(in) :: jump(:), wanted(:)
+      real(dp) :: step(size(wanted))
+      real(dp) :: part(size(wanted), 1), rate(size(wanted))
+      type(gmres_type) :: gmres
+
+      associate (omega => workspace%pass%omega)
+         rate = heat_by_omega(bodies, data, workspace, jump)*omega
+         call gmres%begin(log_ratio(wanted, omega), solved, min(size(step), most_products))
+         do while (gmres%wants_product)
+            part = changes_by_temperature(bodies, heat, workspace, workspace%pass%coordinate, &
+               tail_of_heats(bodies, workspace, rate*gmres%vector))
+            where (wanted <= 0.0_dp .or. omega <= 0.0_dp) part(:, 1) = 0.0_dp
+            call gmres%take(gmres%vector - part(:, 1)/max(wanted, tiny(1.0_dp)))
+         end do
+      end associate
+      step = min(max(gmres%solution(), -longest_step), longest_step)
+   end function step_by_products
 
    !> dW/domega of the solution that the factors belong to.
    function derivative_by_temperature(bodies, heat, workspace, coordinate, by_omega) &
