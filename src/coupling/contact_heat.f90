@@ -10,7 +10,6 @@
 !>
 !> at constant z. It is a part of the derivative of the contact operator too.
 module contact_heat
-   use anderson_mixing, only: mixing_type
    use conductance_graph, only: conductance_graph_type
    use conductance_laws, only: conductance
    use dense, only: lu_type, product_of
@@ -40,7 +39,6 @@ module contact_heat
    end type jump_derivatives_type
 
    integer, parameter :: most_steps = 100            !! solutions of (3.4)
-   integer, parameter :: most_mixed = 20     !! of these, those of a sparse tail that are mixed
    real(dp), parameter :: longest_step = 2.0_dp      !! of any log omega
    real(dp), parameter :: rounding = 1.0e-13_dp      !! relative change of omega that is none
    real(dp), parameter :: converged = 1.0e-10_dp     !! the same, where it falls no more
@@ -259,11 +257,8 @@ contains
       type(error_type), allocatable, intent(out) :: error
       real(dp), dimension(size(jump)) :: base, step, wanted
       real(dp) :: last, part, residual
-      type(mixing_type) :: mixing
-      integer :: i, k
-      logical :: has_mixed, mixes
+      integer :: i
 
-      has_mixed = .false.
       part = 1.0_dp
       last = huge(last)
       do i = 1, most_steps
@@ -274,14 +269,7 @@ contains
          wanted = workspace%pass%graph%omega(workspace%pass%coordinate)
          residual = maxval([0.0_dp, abs(log_ratio(wanted, workspace%pass%omega))])
          if (residual <= rounding .or. (residual <= converged .and. residual >= 0.5_dp*last)) return
-         mixes = heat%schur%is_sparse() .and. i <= most_mixed
-         if (mixes) then
-            base = workspace%pass%omega
-            step = mixing%step(log_conductance(base), log_ratio(wanted, base), [(1.0_dp, k=1, &
-               size(base))])
-            step = min(max(step, -longest_step), longest_step)
-            last = residual
-         else if (residual < last .or. part < shortest .or. has_mixed) then
+         if (residual < last .or. part < shortest) then
             if (heat%schur%is_sparse()) then
                step = step_by_products(bodies, heat, data, workspace, jump, wanted)
             else
@@ -293,22 +281,12 @@ contains
          else
             part = 0.5_dp*part
          end if
-         has_mixed = mixes
          workspace%pass%omega = merge(base*exp(part*step), wanted, base > 0.0_dp .and. &
             wanted > 0.0_dp)
       end do
       call set_error(error, status_no_convergence, 'conductances and temperatures of the faces '// &
          'do not converge together; last residual '//to_text(residual))
    end subroutine settle_conductance
-
-   !> log(omega); 0 where it carries no heat.
-   elemental function log_conductance(omega)
-      real(dp), intent(in) :: omega
-      real(dp) :: log_conductance
-
-      log_conductance = 0.0_dp
-      if (omega > 0.0_dp) log_conductance = log(omega)
-   end function log_conductance
 
    !> log(wanted/omega); 1 where only one of both carries no heat.
    elemental function log_ratio(wanted, omega)
