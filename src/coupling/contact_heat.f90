@@ -176,7 +176,7 @@ contains
       where (bodies%jump_index == 0) heat = 0.0_dp
    end function heat_by_omega
 
-   !> Unknowns of the thermal tail with heats at the contact points, by the factors of the last pass.
+   !> Unknowns of the thermal tail with heats at the contact points, by the last pass's factors.
    function tail_of_heats(bodies, workspace, heats) result(of_tail)
       type(reduced_bodies_type), intent(in) :: bodies
       type(increment_workspace_type), intent(in) :: workspace  !! as the last pass left it
@@ -199,17 +199,16 @@ contains
       real(dp), intent(in) :: coordinate(:)                    !! (m) z [length]
       real(dp), intent(in) :: rate(:)                          !! (m) as from heat_by_omega
       real(dp), intent(in) :: change(:)                        !! (m) dW
-      real(dp) :: of_omega(size(change))
+      real(dp) :: of_omega(size(change)), part(size(change), 1)
       type(gmres_type) :: gmres
 
       of_omega = change
       if (.not. bodies%points%vary_with_temperature()) return
       call gmres%begin(change, solved, min(size(change), most_products))
       do while (gmres%wants_product)
-         associate (v => gmres%vector, by_temperature => changes_by_temperature(bodies, heat, &
-            workspace, coordinate, tail_of_heats(bodies, workspace, rate*gmres%vector)))
-            call gmres%take(v - by_temperature(:, 1))
-         end associate
+         part = changes_by_temperature(bodies, heat, workspace, coordinate, tail_of_heats(bodies, &
+            workspace, rate*gmres%vector))
+         call gmres%take(gmres%vector - part(:, 1))
       end do
       of_omega = gmres%solution()
    end function with_temperatures

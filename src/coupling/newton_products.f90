@@ -58,11 +58,11 @@ contains
          slope = pass%graph%derivative(tangent%coordinate)
          rest = pass%graph%opening(tangent%coordinate) - pass%opening
          diagonal = advance - pass%own*slope
+         is_left = .false.
          inertia = 1.0_dp
          where (pass%graph%rests(tangent%coordinate) .and. abs(diagonal) > 0.0_dp) &
             inertia = abs(diagonal)
          if (pass%time_step < huge(1.0_dp)) then
-            is_left = .false.
             pass%time_step = min(pass%time_step, stable_time_step())
             inertia = inertia/pass%time_step
          else
@@ -124,8 +124,8 @@ contains
       end function stable_time_step
    end subroutine find_newton_step
 
-   !> Own derivatives of the openings, and the conductances of the bodies about the contact points, 1
-   !> where that means nothing.
+   !> Own derivatives of the openings, and the conductances of the bodies about the contact points,
+   !> 1 where that means nothing.
    subroutine find_own(bodies, heat, trial, tangent, own, body)
       type(reduced_bodies_type), intent(in) :: bodies
       type(heat_reduction_type), intent(in) :: heat
@@ -140,7 +140,8 @@ contains
       allocate (body(size(place)), source=1.0_dp)
       associate (start => bodies%points%interface_start, workspace => trial%workspace)
          do i = 1, size(start) - 1
-            place(start(i):start(i + 1) - 1) = [(modulo(k, apart), k=0, start(i + 1) - start(i) - 1)]
+            place(start(i):start(i + 1) - 1) = [(modulo(k - start(i), apart), k=start(i), &
+               start(i + 1) - 1)]
          end do
          do i = 0, maxval(place)
             of_tail = tail_of_heats(bodies, workspace, merge(tangent%rate, 0.0_dp, place == i))

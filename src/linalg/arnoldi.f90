@@ -64,7 +64,7 @@ contains
       real(dp), intent(in) :: nothing
       !> Products that the caller can have, who stops; absent: until both eigenvalues are sharp
       integer, intent(in), optional :: most
-      real(dp), intent(in), optional :: enough     !! residual beside 1 that will do from the first on
+      real(dp), intent(in), optional :: enough     !! residual beside 1 that will always do
       integer :: i
 
       self%nothing = nothing
