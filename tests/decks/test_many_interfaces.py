@@ -31,10 +31,12 @@ def contact_of(result):
 @pytest.mark.parametrize("kind", KINDS)
 @pytest.mark.parametrize("pellets", [3, 8])
 def test_the_sparse_tail_gives_what_the_full_matrix_gives(tmp_path, pellets, kind):
-    found = {}
+    found, gains = {}, {}
     for tail in ("FULL", "SPARSE"):
         deck = write(tmp_path / f"{tail}.inp", rod(pellets, tail, kind))
-        found[tail] = contact_of(solve(deck))
+        found[tail] = contact_of(result := solve(deck))
+        with h5py.File(result) as file:
+            gains[tail] = [file["history"][name][:] for name in ("coupling_gain", "coupling_gain_max")]
     note_changes(rod(pellets, "FULL", kind), rod(pellets, "SPARSE", kind))
     full, sparse = found["FULL"], found["SPARSE"]
     assert np.array_equal(full["status"], sparse["status"])
@@ -44,6 +46,7 @@ def test_the_sparse_tail_gives_what_the_full_matrix_gives(tmp_path, pellets, kin
                         ("heat_flux", np.max(np.abs(full["heat_flux"]))),
                         ("gap", np.max(np.abs(full["gap"]))), ("slip", np.max(np.abs(full["gap"])))):
         assert sparse[name] == pytest.approx(full[name], rel=0, abs=1e-9 * scale), name
+    assert np.max(np.abs(np.subtract(gains["SPARSE"], gains["FULL"]))) <= 1e-3
 
 
 @pytest.mark.parametrize("tail", ["FULL", "SPARSE"])
