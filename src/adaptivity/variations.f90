@@ -24,6 +24,7 @@ module variations
    use refinement, only: numbering_fault, refine, refine_chosen
    use mesh_checks, only: point_jacobians
    use steps, only: solves_heat, solves_mechanics
+   use tail_choice, only: needs_full_tail
    use text, only: append, to_text
    implicit none
    private
@@ -133,7 +134,7 @@ contains
 
       level = merge(model%written_levels, variation%levels, variation%levels == as_written)
       model%memory_needed = memory_needed(model, level, order_of(model, variation))
-      call check_memory(model%memory_needed, error)
+      call allow_memory(model, error)
       if (allocated(error)) return
       call refine(model, level)
       regions = model%regions
@@ -198,8 +199,23 @@ contains
       end if
       call refine_chosen(model, chosen, levels)
       model%memory_needed = memory_needed(model, 0, order_of(model, variation))
-      call check_memory(model%memory_needed, error)
+      call allow_memory(model, error)
    end subroutine divide_once
+
+   !> Compares the memory that a run needs with what it may have; says what of the deck holds the
+   !> contact unknowns of many bodies in one full matrix.
+   !> Error: as check_memory.
+   subroutine allow_memory(model, error)
+      type(model_type), intent(in) :: model
+      type(error_type), allocatable, intent(out) :: error
+      character(:), allocatable :: what
+
+      call check_memory(model%memory_needed, error)
+      if (.not. allocated(error) .or. model%mesh%body_count <= 2) return
+      what = needs_full_tail(model)
+      if (len(what) > 0) error%message = error%message//'; '//what//' needs derivatives '// &
+         'between all contact points, and with them a full matrix'
+   end subroutine allow_memory
 
    !> Makes the elements of a model linear ones, as ORDER=1 asks.
    !> Error: status_deck, where an element without its midside nodes is inverted.

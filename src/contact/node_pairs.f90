@@ -165,6 +165,7 @@ contains
 
       body_angle = 0.0_dp
       do e = 1, size(mesh%element_number)
+         if (mesh%element_body(e) /= mesh%node_body(node)) cycle
          associate (n => element_corner_count(mesh%element_kind(e)))
             k = findloc(mesh%element_nodes(:n, e), node, dim=1)
             if (k == 0) cycle

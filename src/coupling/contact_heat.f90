@@ -10,11 +10,11 @@
 !>
 !> at constant z. It is a part of the derivative of the contact operator too.
 module contact_heat
-   use anderson_mixing, only: mixing_type
    use conductance_graph, only: conductance_graph_type
    use conductance_laws, only: conductance
    use dense, only: lu_type, product_of
    use errors, only: check_finite, error_type, set_error, status_no_convergence
+   use gmres, only: gmres_type
    use heat_equation, only: heat_across
    use heat_reduction, only: heat_reduction_type
    use increment_data, only: increment_data_type, increment_workspace_type
@@ -27,7 +27,7 @@ module contact_heat
    private
    public :: jump_derivatives_type, temperature_jumps, jump_derivatives, heat_by_omega, &
       take_temperatures, settle_conductance, at_own_temperatures, derivative_by_temperature, &
-      changes_by_temperature, changes_by_faces
+      changes_by_temperature, changes_by_faces, tail_of_heats, with_temperatures
 
    !> How the unknowns of the tail follow the conductance of each contact point that carries heat.
    type :: jump_derivatives_type
@@ -39,11 +39,12 @@ module contact_heat
    end type jump_derivatives_type
 
    integer, parameter :: most_steps = 100            !! solutions of (3.4)
-   integer, parameter :: most_mixed = 20     !! of these, those of a sparse tail that are mixed
    real(dp), parameter :: longest_step = 2.0_dp      !! of any log omega
    real(dp), parameter :: rounding = 1.0e-13_dp      !! relative change of omega that is none
    real(dp), parameter :: converged = 1.0e-10_dp     !! the same, where it falls no more
    real(dp), parameter :: shortest = 1.0e-3_dp       !! part of a step below which none is tried
+   integer, parameter :: most_products = 200         !! for one step
+   real(dp), parameter :: solved = 1.0e-12_dp        !! residual of a step by products, relative
 
 contains
 
@@ -175,6 +176,43 @@ contains
       where (bodies%jump_index == 0) heat = 0.0_dp
    end function heat_by_omega
 
+   !> Unknowns of the thermal tail with heats at the contact points, by the last pass's factors.
+   function tail_of_heats(bodies, workspace, heats) result(of_tail)
+      type(reduced_bodies_type), intent(in) :: bodies
+      type(increment_workspace_type), intent(in) :: workspace  !! as the last pass left it
+      real(dp), intent(in) :: heats(:)                        !! (m)
+      real(dp) :: of_tail(bodies%thermal%map%tail, 1)
+      integer :: k
+
+      of_tail = 0.0_dp
+      do k = 1, size(heats)
+         if (bodies%jump_index(k) > 0) of_tail(bodies%jump_index(k), 1) = heats(k)
+      end do
+      call workspace%tail%solve_columns(of_tail)
+   end function tail_of_heats
+
+   !> Changes of the conductances with the laws' own changes dW: domega = dW + (dW/domega) domega.
+   function with_temperatures(bodies, heat, workspace, coordinate, rate, change) result(of_omega)
+      type(reduced_bodies_type), intent(in) :: bodies
+      type(heat_reduction_type), intent(in) :: heat
+      type(increment_workspace_type), intent(in) :: workspace  !! as the last pass left it
+      real(dp), intent(in) :: coordinate(:)                    !! (m) z [length]
+      real(dp), intent(in) :: rate(:)                          !! (m) as from heat_by_omega
+      real(dp), intent(in) :: change(:)                        !! (m) dW
+      real(dp) :: of_omega(size(change)), part(size(change), 1)
+      type(gmres_type) :: gmres
+
+      of_omega = change
+      if (.not. bodies%points%vary_with_temperature()) return
+      call gmres%begin(change, solved, min(size(change), most_products))
+      do while (gmres%wants_product)
+         part = changes_by_temperature(bodies, heat, workspace, coordinate, tail_of_heats(bodies, &
+            workspace, rate*gmres%vector))
+         call gmres%take(gmres%vector - part(:, 1))
+      end do
+      of_omega = gmres%solution()
+   end function with_temperatures
+
    !> Temperatures of the faces with given jumps, and the laws at these.
    subroutine take_temperatures(bodies, heat, data, jump, workspace)
       type(reduced_bodies_type), intent(in) :: bodies
@@ -218,11 +256,8 @@ contains
       type(error_type), allocatable, intent(out) :: error
       real(dp), dimension(size(jump)) :: base, step, wanted
       real(dp) :: last, part, residual
-      type(mixing_type) :: mixing
-      integer :: i, k
-      logical :: has_mixed, mixes
+      integer :: i
 
-      has_mixed = .false.
       part = 1.0_dp
       last = huge(last)
       do i = 1, most_steps
@@ -233,37 +268,24 @@ contains
          wanted = workspace%pass%graph%omega(workspace%pass%coordinate)
          residual = maxval([0.0_dp, abs(log_ratio(wanted, workspace%pass%omega))])
          if (residual <= rounding .or. (residual <= converged .and. residual >= 0.5_dp*last)) return
-         mixes = heat%schur%is_sparse() .and. i <= most_mixed
-         if (mixes) then
-            base = workspace%pass%omega
-            step = mixing%step(log_conductance(base), log_ratio(wanted, base), [(1.0_dp, k=1, &
-               size(base))])
-            step = min(max(step, -longest_step), longest_step)
-            last = residual
-         else if (residual < last .or. part < shortest .or. has_mixed) then
-            step = newton_step(bodies, heat, data, workspace, jump, wanted)
+         if (residual < last .or. part < shortest) then
+            if (heat%schur%is_sparse()) then
+               step = step_by_products(bodies, heat, data, workspace, jump, wanted)
+            else
+               step = newton_step(bodies, heat, data, workspace, jump, wanted)
+            end if
             base = workspace%pass%omega
             last = residual
             part = 1.0_dp
          else
             part = 0.5_dp*part
          end if
-         has_mixed = mixes
          workspace%pass%omega = merge(base*exp(part*step), wanted, base > 0.0_dp .and. &
             wanted > 0.0_dp)
       end do
       call set_error(error, status_no_convergence, 'conductances and temperatures of the faces '// &
          'do not converge together; last residual '//to_text(residual))
    end subroutine settle_conductance
-
-   !> log(omega); 0 where it carries no heat.
-   elemental function log_conductance(omega)
-      real(dp), intent(in) :: omega
-      real(dp) :: log_conductance
-
-      log_conductance = 0.0_dp
-      if (omega > 0.0_dp) log_conductance = log(omega)
-   end function log_conductance
 
    !> log(wanted/omega); 1 where only one of both carries no heat.
    elemental function log_ratio(wanted, omega)
@@ -308,6 +330,30 @@ contains
       if (.not. singular) call lu%solve(rest)
       step = min(max(rest(:, 1), -longest_step), longest_step)
    end function newton_step
+
+   !> The same step where no matrix between all contact points is formed.
+   function step_by_products(bodies, heat, data, workspace, jump, wanted) result(step)
+      type(reduced_bodies_type), intent(in) :: bodies
+      type(heat_reduction_type), intent(in) :: heat
+      type(increment_data_type), intent(in) :: data
+      type(increment_workspace_type), intent(in) :: workspace
+      real(dp), intent(in) :: jump(:), wanted(:)
+      real(dp) :: step(size(wanted))
+      real(dp) :: part(size(wanted), 1), rate(size(wanted))
+      type(gmres_type) :: gmres
+
+      associate (omega => workspace%pass%omega)
+         rate = heat_by_omega(bodies, data, workspace, jump)*omega
+         call gmres%begin(log_ratio(wanted, omega), solved, min(size(step), most_products))
+         do while (gmres%wants_product)
+            part = changes_by_temperature(bodies, heat, workspace, workspace%pass%coordinate, &
+               tail_of_heats(bodies, workspace, rate*gmres%vector))
+            where (wanted <= 0.0_dp .or. omega <= 0.0_dp) part(:, 1) = 0.0_dp
+            call gmres%take(gmres%vector - part(:, 1)/max(wanted, tiny(1.0_dp)))
+         end do
+      end associate
+      step = min(max(gmres%solution(), -longest_step), longest_step)
+   end function step_by_products
 
    !> dW/domega of the solution that the factors belong to.
    function derivative_by_temperature(bodies, heat, workspace, coordinate, by_omega) &

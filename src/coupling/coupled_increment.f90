@@ -38,6 +38,10 @@ module coupled_increment
    !! from 1
    real(dp), parameter :: same = 1.0e3_dp       !! times the rounding of coordinates: equal gaps
    real(dp), parameter :: no_gain = 1.0e-6_dp      !! a largest real gain that is none beside 1
+   !> Residual of the gains of many interfaces, beside 1: where many parts are alike so are their
+   !> gains, and to tell these apart takes hundreds of products. Where laws vary with temperatures
+   !> the matrix is less normal, and errors of the gains may be larger than residuals.
+   real(dp), parameter :: known_of_many = 1.0e-3_dp
    real(dp), parameter :: least_part = 1.0e-12_dp  !! of the largest factor, that counts in scales
 
 contains
@@ -380,7 +384,9 @@ contains
          heat_scale = max(maxval(abs(rate)), tiny(1.0_dp)**0.25_dp)
          allocate (of_tail(bodies%thermal%map%tail, 1), change(size(rate), 1))
          if (size(heated) > 0) allocate (friction_heat(size(workspace%friction%heat), 1))
-         call gains%begin(size(free) + size(heated), no_gain)
+         call gains%begin(size(free) + size(heated), no_gain, &
+            enough=merge(known_of_many, 0.0_dp, heat%schur%is_sparse() .and. &
+            .not. bodies%points%vary_with_temperature()))
          do while (gains%wants_product)
             of_tail = 0.0_dp
             do k = 1, size(free)

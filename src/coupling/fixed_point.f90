@@ -30,6 +30,10 @@ module fixed_point
       !> (m) conductance that the bodies put in series with each contact point; set with the
       !> derivative
       real(dp), allocatable :: body(:)
+      !> Of a sparse tail in place of the derivative: (m) Newton's step [length], from products with
+      !> it, and the contact points' own derivatives
+      real(dp), allocatable :: step(:), own(:)
+      real(dp) :: time_step = huge(1.0_dp)  !! tau of this step
       !> (m) derivative of the openings by the load factor at constant coordinates, on a branch
       real(dp), allocatable :: by_factor(:)
    contains
@@ -40,11 +44,13 @@ module fixed_point
    type, abstract :: accelerator_type
       real(dp), allocatable :: g(:)   !! (m) part of the way that each contact point goes
       integer :: kept = 0 !! contact points whose g was kept in the last pass, eq. (4.2) giving none
+      logical :: may_follow_path = .true.   !! a path needs the derivative as a matrix
       logical :: follows_path = .false.   !! on a continuous path of conductances (homotopy)
       logical :: retreats = .false. !! whether next goes on from a pass whose zones were not found
    contains
       procedure(next_interface), deferred :: next
       procedure :: asks_derivative
+      procedure :: time_step_of
    end type accelerator_type
 
    abstract interface
@@ -102,6 +108,14 @@ contains
 
       asks = self%follows_path .and. pass%found
    end function asks_derivative
+
+   !> tau of the step from a pass whose derivative is asked for; huge for Newton's step.
+   pure real(dp) function time_step_of(self, pass)
+      class(accelerator_type), intent(in) :: self
+      type(pass_type), intent(in) :: pass
+
+      time_step_of = huge(1.0_dp)
+   end function time_step_of
 
    !> omega* becomes its image.
    subroutine next_picard(self, pass)

@@ -21,6 +21,7 @@ module increment_iteration
    use interruption, only: check_overdue
    use kinds, only: dp
    use newton, only: newton_type
+   use newton_products, only: find_newton_step
    use reduced_bodies, only: reduced_bodies_type
    use solution_report, only: iteration_record_type, solution_report_type
    use solution_state, only: solution_state_type
@@ -212,6 +213,7 @@ contains
       allocate (passes(0))
       call begin_passes(bodies, trial%data, trial%next%omega, trial%workspace)
       call make_accelerator(controls, size(turns), accelerator)
+      if (heat%schur%is_sparse()) accelerator%may_follow_path = .false.
       associate (data => trial%data, workspace => trial%workspace, next => trial%next, &
          pass => trial%workspace%pass, record => trial%workspace%record)
          do i = 1, huge(i) - 1
@@ -329,7 +331,15 @@ contains
 
       associate (pass => trial%workspace%pass)
          if (allocated(pass%derivative)) deallocate (pass%derivative)
-         if (accelerator%asks_derivative(pass)) call find_derivative(bodies, heat, trial)
+         if (allocated(pass%step)) deallocate (pass%step)
+         if (accelerator%asks_derivative(pass)) then
+            if (heat%schur%is_sparse()) then
+               pass%time_step = accelerator%time_step_of(pass)
+               call find_newton_step(bodies, heat, trial)
+            else
+               call find_derivative(bodies, heat, trial)
+            end if
+         end if
          call accelerator%next(pass)
          trial%next%omega = pass%omega
       end associate

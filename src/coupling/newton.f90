@@ -15,7 +15,8 @@
 !> goes over to pseudo-transient continuation: (M/tau + J) dz = -r, implicit Euler steps of M dz/dt
 !> = -r whose tau grows as |r| falls (Kelley & Keyes 1998). That leads to a state which is stable in
 !> this sense, and there the steps are Newton's again. Where all passes are used up, the method
-!> follows a path that leads to a solution wherever it starts (homotopy).
+!> follows a path that leads to a solution wherever it starts (homotopy). On a sparse tail J is not
+!> formed: steps come from products with it (newton_products), and there is no path.
 module newton
    use conductance_graph, only: conductance_graph_type
    use dense, only: eigenvalues, lu_type
@@ -44,6 +45,7 @@ module newton
       real(dp), allocatable, private :: coordinate(:)  !! (m) z of the last pass taken [length]
       real(dp), allocatable, private :: rest(:)        !! (m) r there [length]
       real(dp), allocatable, private :: jacobian(:, :) !! (m, m) J there; unallocated if unknown
+      real(dp), allocatable, private :: full_step(:)   !! (m) dz there from products with J
       real(dp), allocatable, private :: own(:)         !! (m) derivative of opening k by omega k
       !> (m) conductance of the bodies about a contact point
       real(dp), allocatable, private :: body(:)
@@ -53,6 +55,7 @@ module newton
       real(dp), private :: time_step = huge(1.0_dp)    !! tau; huge for Newton's method
    contains
       procedure :: asks_derivative
+      procedure :: time_step_of
       procedure :: next
    end type newton_type
 
@@ -69,6 +72,20 @@ contains
       asks = takes(self, pass)
       if (asks) asks = any(abs(pass%graph%derivative(pass%coordinates())) > 0.0_dp)
    end function asks_derivative
+
+   !> tau of the step from a pass that is taken.
+   pure real(dp) function time_step_of(self, pass) result(tau)
+      class(newton_type), intent(in) :: self   !! memory of the method
+      type(pass_type), intent(in) :: pass      !! the last pass
+      real(dp) :: fall
+
+      tau = self%time_step
+      if (tau < endless) then
+         fall = norm2(self%rest)/max(norm2(residual(pass)), tiny(1.0_dp))
+         tau = tau*min(max(growth*fall, growth_limits(1)), growth_limits(2))
+      end if
+      if (tau >= endless) tau = huge(1.0_dp)
+   end function time_step_of
 
    !> Whether a pass is taken.
    pure function takes(self, pass)
@@ -113,7 +130,7 @@ contains
    subroutine next(self, pass)
       class(newton_type), intent(inout) :: self   !! memory of the method
       type(pass_type), intent(inout) :: pass      !! the last pass in, next omega* out
-      real(dp) :: fall, ratio
+      real(dp) :: ratio
 
       if (.not. pass%found) then
          call retreat(self, pass)
@@ -124,12 +141,8 @@ contains
          return
       end if
       if (takes(self, pass)) then
-         if (self%time_step < endless) then
-            fall = norm2(self%rest)/max(norm2(residual(pass)), tiny(1.0_dp))
-            self%time_step = self%time_step*min(max(growth*fall, growth_limits(1)), &
-               growth_limits(2))
-         end if
-         if (self%time_step >= endless) self%time_step = huge(1.0_dp)
+         self%time_step = self%time_step_of(pass)
+         if (allocated(pass%step)) self%time_step = pass%time_step
          call take(self, pass)
          call make_step(self, pass%graph)
       else
@@ -140,10 +153,15 @@ contains
          if (self%part < shortest) then
             self%time_step = first_time_step
             call make_step(self, pass%graph)
+            ! The products are those of the last pass: back to where the step began.
+            if (allocated(self%full_step)) then
+               self%time_step = first_time_step/growth
+               self%step = 0.0_dp
+            end if
          end if
       end if
       call try(self, pass)
-      if (pass%iteration < self%most_steps) return
+      if (pass%iteration < self%most_steps .or. .not. self%may_follow_path) return
       allocate (self%path)
       self%follows_path = .true.
       call self%path%begin(pass%graph, pass%opening, pass%coordinate)
@@ -179,12 +197,18 @@ contains
          allocate (self%body(size(derivative)), source=1.0_dp)
          allocate (self%filter(2, 0))
       end if
-      if (allocated(pass%derivative) .and. .not. allocated(self%own)) then
+      if ((allocated(pass%derivative) .or. allocated(pass%step)) .and. &
+         .not. allocated(self%own)) then
          self%body = pass%body
          self%filter = reshape([real(dp) ::], [2, 0])
       end if
       self%filter = reshape([self%filter, measures(self, pass)], [2, size(self%filter, 2) + 1])
       if (allocated(self%jacobian)) deallocate (self%jacobian)
+      if (allocated(self%full_step)) deallocate (self%full_step)
+      if (allocated(pass%step)) then
+         self%full_step = pass%step
+         self%own = pass%own
+      end if
       if (.not. allocated(pass%derivative)) return
       derivative = pass%graph%derivative(self%coordinate)
       self%own = [(pass%derivative(k, k), k=1, size(derivative))]
@@ -201,7 +225,7 @@ contains
       type(pass_type), intent(inout) :: pass
 
       associate (graph => pass%graph)
-         if (allocated(self%jacobian)) then
+         if (allocated(self%jacobian) .or. allocated(self%full_step)) then
             pass%coordinate = graph%moved(self%coordinate, self%part*self%step, self%body, self%own)
          else
             pass%coordinate = graph%coordinate_of_opening(graph%opening(self%coordinate) + &
@@ -224,6 +248,7 @@ contains
 
       self%part = 1.0_dp
       self%step = -self%rest
+      if (allocated(self%full_step)) self%step = self%full_step
       if (.not. allocated(self%jacobian)) return
       inertia = inertias(self, graph)
       if (self%time_step < endless) self%time_step = min(self%time_step, &

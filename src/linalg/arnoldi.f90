@@ -8,7 +8,7 @@
 !>
 !> The start is a vector without any order: one that is near an eigenvector would hide the others.
 !> Products are wanted until the eigenvalue of largest modulus and the largest real one are sharp,
-!> after many only until they are known beside 1.
+!> after many, or where the caller says what will do, only until they are known beside 1.
 !> A caller that seeks others says how many products it can have, and stops when it likes.
 module arnoldi
    use, intrinsic :: ieee_arithmetic, only: ieee_is_finite
@@ -40,6 +40,7 @@ module arnoldi
       complex(dp), allocatable :: value(:)         !! (k) all eigenvalues of the space then
       real(dp), allocatable :: residual(:)         !! (k) of these
       real(dp), private :: nothing = 0.0_dp        !! as begin has it
+      real(dp), private :: enough = 0.0_dp         !! as begin has it
       integer, private :: most = 0                 !! products
       logical, private :: stops_itself = .true.
       real(dp), allocatable, private :: vectors(:, :)   !! (k, k) on the basis, as eigenvalues
@@ -55,7 +56,7 @@ module arnoldi
 contains
 
    !> Begins with a matrix of which nothing is known.
-   subroutine begin(self, n, nothing, most)
+   subroutine begin(self, n, nothing, most, enough)
       class(arnoldi_type), intent(out) :: self
       integer, intent(in) :: n                     !! rows, > 0
       !> Modulus below which the largest real eigenvalue, where the others may be dense, need not be
@@ -63,9 +64,11 @@ contains
       real(dp), intent(in) :: nothing
       !> Products that the caller can have, who stops; absent: until both eigenvalues are sharp
       integer, intent(in), optional :: most
+      real(dp), intent(in), optional :: enough     !! residual beside 1 that will always do
       integer :: i
 
       self%nothing = nothing
+      if (present(enough)) self%enough = enough
       self%most = n
       self%stops_itself = .not. present(most)
       if (present(most)) self%most = min(n, most)
@@ -138,8 +141,8 @@ contains
          maxval(abs(real_part)), dim=1)
       self%largest = cmplx(real_part(largest), imaginary_part(largest), dp)
       self%largest_real = -huge(1.0_dp)
-      least = 0.0_dp
-      if (self%products >= patience) least = blurred
+      least = self%enough
+      if (self%products >= patience) least = max(least, blurred)
       self%wants_product = residual(largest) > max(sharp*abs(self%largest), least)
       if (largest_real == 0) return
       self%largest_real = real_part(largest_real)

@@ -2,6 +2,11 @@
 unknowns, on rods of pellets that heat closes onto their tube, each pellet pressed on the next.
 """
 
+import os
+import re
+import resource
+import subprocess
+
 import h5py
 import numpy as np
 import pytest
@@ -26,10 +31,12 @@ def contact_of(result):
 @pytest.mark.parametrize("kind", KINDS)
 @pytest.mark.parametrize("pellets", [3, 8])
 def test_the_sparse_tail_gives_what_the_full_matrix_gives(tmp_path, pellets, kind):
-    found = {}
+    found, gains = {}, {}
     for tail in ("FULL", "SPARSE"):
         deck = write(tmp_path / f"{tail}.inp", rod(pellets, tail, kind))
-        found[tail] = contact_of(solve(deck))
+        found[tail] = contact_of(result := solve(deck))
+        with h5py.File(result) as file:
+            gains[tail] = [file["history"][name][:] for name in ("coupling_gain", "coupling_gain_max")]
     note_changes(rod(pellets, "FULL", kind), rod(pellets, "SPARSE", kind))
     full, sparse = found["FULL"], found["SPARSE"]
     assert np.array_equal(full["status"], sparse["status"])
@@ -39,6 +46,7 @@ def test_the_sparse_tail_gives_what_the_full_matrix_gives(tmp_path, pellets, kin
                         ("heat_flux", np.max(np.abs(full["heat_flux"]))),
                         ("gap", np.max(np.abs(full["gap"]))), ("slip", np.max(np.abs(full["gap"])))):
         assert sparse[name] == pytest.approx(full[name], rel=0, abs=1e-9 * scale), name
+    assert np.max(np.abs(np.subtract(gains["SPARSE"], gains["FULL"]))) <= 1e-3
 
 
 @pytest.mark.parametrize("tail", ["FULL", "SPARSE"])
@@ -156,6 +164,44 @@ def test_newtons_method_follows_where_mixing_fails(tmp_path):
     scale = np.max(found["FULL"]["pressure"])
     assert found["SPARSE"]["pressure"] == pytest.approx(found["FULL"]["pressure"], rel=0,
                                                         abs=1e-7 * scale)
+
+
+@pytest.mark.parametrize(("kind", "passes"), [("CAX4", 6), ("tables", 4), ("transient", 6)])
+def test_newtons_steps_from_products_lead_where_those_of_a_matrix_lead(tmp_path, kind, passes):
+    """Too few passes for mixing are enough for Newton's method, whose steps halve no residual."""
+    found, cards = {}, {tail: rod(4, tail, kind) for tail in ("FULL", "SPARSE")}
+    for tail, most in (("FULL", 50), ("SPARSE", passes)):
+        place = cards[tail].index("*FIXED POINT, TOL=1E-12")
+        cards[tail][place] += f", METHOD=NEWTON, MAXITER={most}"
+        deck = write(tmp_path / f"{tail}.inp", cards[tail])
+        found[tail] = contact_of(solve(deck))
+    rows = [line.split() for line in deck.with_suffix(".cvg").read_text().splitlines()[1:]]
+    newton = [row for row in rows if float(row[4]) == 1.0]
+    assert newton
+    assert sum(float(row[2]) <= 1e-12 for row in newton) >= len(newton) // 4
+    assert np.array_equal(found["FULL"]["status"], found["SPARSE"]["status"])
+    for name, scale in (("pressure", "pressure"), ("shear", "pressure"), ("heat_flux", "heat_flux"),
+                        ("gap", "gap"), ("slip", "gap")):
+        assert found["SPARSE"][name] == pytest.approx(
+            found["FULL"][name], rel=0, abs=1e-9 * np.max(np.abs(found["FULL"][scale]))), name
+
+
+@pytest.mark.parametrize(("card", "name"), [
+    ("*STABILITY", "*STABILITY"),
+    ("*GAP HEAT GENERATION", "heat of friction"),
+    ("*START, FROM=BOTH", "*START, FROM=BOTH")])
+def test_a_full_matrix_that_is_too_large_is_refused_with_its_reason(tmp_path, card, name):
+    cards = rod(100)
+    place = cards.index("*GAP LAW, TYPE=GAS") if "GENERATION" in card else cards.index("*STEP")
+    cards[place + 3 * (card == "*STABILITY"):place + 3 * (card == "*STABILITY")] = [card]
+    deck = write(tmp_path / "rod.inp", cards)
+    limit = 2000 * 2**20
+    process = subprocess.run(
+        [os.environ["THERCON"], "check", deck], capture_output=True, text=True, check=False,
+        preexec_fn=lambda: resource.setrlimit(resource.RLIMIT_AS, (limit, limit)))
+    assert process.returncode == 3
+    assert re.search(r"the run needs about \d{4,} MB and may use \d+ MB \(.+\); " + re.escape(name) +
+                     " needs derivatives between all contact points", process.stderr)
 
 
 @pytest.mark.parametrize(("card", "name"), [

@@ -1,0 +1,163 @@
+!> Newton's step where a matrix between all contact points is not formed (newton):
+!>
+!>    (M/tau + J) dz = -r,    J = diag(opening') - D (I - K)^-1 diag(omega'),
+!>
+!> by GMRES from products with J, each a solution on the thermal tail and one of the contact system.
+!> K is the derivative of the conductances by each other by way of the temperatures. The equations
+!> are divided by the contact points' own derivatives. These are found several at a time, of points
+!> that are far from each other, and so but nearly.
+module newton_products
+   use arnoldi, only: arnoldi_type
+   use closing_instant, only: make_tangent
+   use contact_heat, only: heat_by_omega, tail_of_heats, with_temperatures
+   use contact_operator, only: opening_changes
+   use contact_workspace, only: contact_workspace_type
+   use gmres, only: gmres_type
+   use heat_reduction, only: heat_reduction_type
+   use increment_data, only: trial_type
+   use kinds, only: dp
+   use reduced_bodies, only: reduced_bodies_type
+   implicit none
+   private
+   public :: find_newton_step
+
+   integer, parameter :: apart = 16             !! contact points from one to the next found with it
+   integer, parameter :: most_products = 300
+   real(dp), parameter :: solved = 1.0e-8_dp    !! residual of a step, relative
+   real(dp), parameter :: rough = 1.0e-2_dp     !! residual of eigenvalues, beside 1
+   real(dp), parameter :: least_own = 1.0e-3_dp !! own derivative that divides an equation, beside 1
+
+   !> What products take, beside the pass.
+   type :: opening_tangent_type
+      type(contact_workspace_type) :: contact     !! factors
+      real(dp), allocatable :: coordinate(:)      !! (m) z [length]
+      real(dp), allocatable :: rate(:)            !! (m) load of the thermal tail per omega
+   end type opening_tangent_type
+
+contains
+
+   !> The step of the last pass, and what else Newton's method takes from there: the contact points'
+   !> own derivatives and the conductances of the bodies about them. No step where J does not exist.
+   subroutine find_newton_step(bodies, heat, trial)
+      type(reduced_bodies_type), intent(in) :: bodies
+      type(heat_reduction_type), intent(in) :: heat
+      !> as the pass left it; with tau, which is shortened to where the step leads on
+      type(trial_type), intent(inout) :: trial
+      type(opening_tangent_type) :: tangent
+      real(dp), dimension(size(trial%next%omega)) :: advance, diagonal, inertia, rest, slope
+      logical :: is_left(size(trial%next%omega)), sound
+
+      call make_tangent(bodies%equilibrium%contact, trial%workspace%contact, trial%next%contact, &
+         tangent%contact, sound)
+      if (.not. sound) return
+      associate (pass => trial%workspace%pass)
+         tangent%coordinate = pass%coordinates()
+         tangent%rate = heat_by_omega(bodies, trial%data, trial%workspace, trial%next%jump)
+         call find_own(bodies, heat, trial, tangent, pass%own, pass%body)
+         advance = pass%graph%advance(tangent%coordinate)
+         slope = pass%graph%derivative(tangent%coordinate)
+         rest = pass%graph%opening(tangent%coordinate) - pass%opening
+         diagonal = advance - pass%own*slope
+         is_left = .false.
+         inertia = 1.0_dp
+         where (pass%graph%rests(tangent%coordinate) .and. abs(diagonal) > 0.0_dp) &
+            inertia = abs(diagonal)
+         if (pass%time_step < huge(1.0_dp)) then
+            pass%time_step = min(pass%time_step, stable_time_step())
+            inertia = inertia/pass%time_step
+         else
+            inertia = 0.0_dp
+         end if
+         ! No conductance at which the contact point may rest brings its opening to 0: it does not
+         ! rest.
+         is_left = pass%graph%rests(tangent%coordinate) .and. &
+            abs(diagonal)*pass%graph%width <= abs(rest)
+         rest = -rest
+         where (is_left)
+            rest = pass%graph%coordinate_of_opening(rest) - tangent%coordinate
+            pass%own = 0.0_dp
+            inertia = 0.0_dp
+            diagonal = 1.0_dp
+         end where
+         diagonal = diagonal + inertia
+         where (abs(diagonal) < least_own) diagonal = 1.0_dp
+         pass%step = step_of()
+      end associate
+   contains
+      !> J times a change of the coordinates.
+      function by_jacobian(change) result(product)
+         real(dp), intent(in) :: change(:)
+         real(dp) :: product(size(change)), of_opening(size(change), 1)
+
+         associate (workspace => trial%workspace)
+            call opening_changes(bodies, workspace%pass%graph, tangent%contact, &
+               trial%next%contact, heat%loads_of_tail(bodies, tail_of_heats(bodies, workspace, &
+               tangent%rate*with_temperatures(bodies, heat, workspace, tangent%coordinate, &
+               tangent%rate, slope*change))), of_opening)
+         end associate
+         product = merge(change, advance*change - of_opening(:, 1), is_left)
+      end function by_jacobian
+
+      function step_of() result(step)
+         real(dp) :: step(size(rest))
+         type(gmres_type) :: gmres
+
+         call gmres%begin(rest/diagonal, solved, min(size(rest), most_products))
+         do while (gmres%wants_product)
+            call gmres%take((by_jacobian(gmres%vector) + inertia*gmres%vector)/diagonal)
+         end do
+         step = gmres%solution()
+      end function step_of
+
+      !> As newton has it, of roughly known eigenvalues.
+      function stable_time_step() result(tau)
+         real(dp) :: tau
+         type(arnoldi_type) :: modes
+
+         call modes%begin(size(rest), 0.0_dp, enough=rough)
+         do while (modes%wants_product)
+            call modes%take(-by_jacobian(modes%vector)/inertia)
+         end do
+         tau = huge(1.0_dp)
+         if (modes%found) tau = 0.5_dp/max(maxval(real(modes%value, dp), mask=abs(aimag( &
+            modes%value)) <= real(modes%value, dp)), tiny(1.0_dp))
+      end function stable_time_step
+   end subroutine find_newton_step
+
+   !> Own derivatives of the openings, and the conductances of the bodies about the contact points,
+   !> 1 where that means nothing.
+   subroutine find_own(bodies, heat, trial, tangent, own, body)
+      type(reduced_bodies_type), intent(in) :: bodies
+      type(heat_reduction_type), intent(in) :: heat
+      type(trial_type), intent(in) :: trial
+      type(opening_tangent_type), intent(in) :: tangent
+      real(dp), allocatable, intent(out) :: own(:), body(:)    ! (m)
+      real(dp), allocatable :: of_tail(:, :)
+      real(dp) :: change(size(tangent%rate), 1)
+      integer :: place(size(tangent%rate)), i, k
+
+      allocate (own(size(place)), source=0.0_dp)
+      allocate (body(size(place)), source=1.0_dp)
+      associate (start => bodies%points%interface_start, workspace => trial%workspace)
+         do i = 1, size(start) - 1
+            place(start(i):start(i + 1) - 1) = [(modulo(k - start(i), apart), k=start(i), &
+               start(i + 1) - 1)]
+         end do
+         do i = 0, maxval(place)
+            of_tail = tail_of_heats(bodies, workspace, merge(tangent%rate, 0.0_dp, place == i))
+            call opening_changes(bodies, workspace%pass%graph, tangent%contact, &
+               trial%next%contact, heat%loads_of_tail(bodies, of_tail), change)
+            do k = 1, size(place)
+               if (place(k) /= i .or. abs(tangent%rate(k)) <= 0.0_dp) cycle
+               own(k) = change(k, 1)
+               associate (j => bodies%jump_index(k))
+                  body(k) = (tangent%rate(k)/of_tail(j, 1) - workspace%tail%diagonal(j))/ &
+                     bodies%points%weight(k)
+               end associate
+            end do
+         end do
+      end associate
+      where (body <= 0.0_dp) body = 1.0_dp
+   end subroutine find_own
+
+end module newton_products
