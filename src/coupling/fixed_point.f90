@@ -50,7 +50,6 @@ module fixed_point
    contains
       procedure(next_interface), deferred :: next
       procedure :: asks_derivative
-      procedure :: time_step_of
    end type accelerator_type
 
    abstract interface
@@ -108,14 +107,6 @@ contains
 
       asks = self%follows_path .and. pass%found
    end function asks_derivative
-
-   !> tau of the step from a pass whose derivative is asked for; huge for Newton's step.
-   pure real(dp) function time_step_of(self, pass)
-      class(accelerator_type), intent(in) :: self
-      type(pass_type), intent(in) :: pass
-
-      time_step_of = huge(1.0_dp)
-   end function time_step_of
 
    !> omega* becomes its image.
    subroutine next_picard(self, pass)

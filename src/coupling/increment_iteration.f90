@@ -334,7 +334,10 @@ contains
          if (allocated(pass%step)) deallocate (pass%step)
          if (accelerator%asks_derivative(pass)) then
             if (heat%schur%is_sparse()) then
-               pass%time_step = accelerator%time_step_of(pass)
+               select type (accelerator)
+               type is (newton_type)
+                  pass%time_step = accelerator%time_step_of(pass)
+               end select
                call find_newton_step(bodies, heat, trial)
             else
                call find_derivative(bodies, heat, trial)

@@ -411,9 +411,10 @@ contains
          call melting%begin(model, attempt%before%stored*stage%size, temperature)
          temperature = merge(run%loads%temperature%value, temperature, &
             run%loads%temperature%active)
-         call melting%foresee(model, linear_combination(1.0_dp, bodies%thermal%matrix, 1.0_dp, &
-            equation%left_film(bodies%capacity)), rhs, equation%duration, &
-            terms(2:size(start) + 1) - terms(:size(start)) == 1, temperature)
+         ! The heat of contact points is not in that equation.
+         if (size(bodies%points%weight) == 0) call melting%foresee(model, linear_combination( &
+            1.0_dp, bodies%thermal%matrix, 1.0_dp, equation%left_film(bodies%capacity)), rhs, &
+            equation%duration, terms(2:size(start) + 1) - terms(:size(start)) == 1, temperature)
          call bodies%set_melting(melting%slopes(model))
          call run%corrections%foresee_melting(model, bodies%melting, start)
          call equation%hold_heat(bodies%capacity, stage%duration, stage%temperature, &
