@@ -1,20 +1,22 @@
 !> Results of a run in a few lines: the quantities of every interface at the last accepted
 !> increment, with their numerical uncertainties.
 module summary
-   use, intrinsic :: ieee_arithmetic, only: ieee_is_nan
+   use, intrinsic :: ieee_arithmetic, only: ieee_is_nan, ieee_quiet_nan, ieee_value
    use contact_points, only: contact_points_type
    use contact_quantities, only: contact_values, end_words, estimated, has_quantity, &
       zone_words
    use contact_system, only: contact_open, contact_stick
    use interface_quantities, only: is_end_of_face, rises_to_end
    use increment_quantities, only: leading_words, stability_words
+   use equations, only: section_nodes
    use field_quantities, only: maxima
    use kinds, only: dp
    use materials, only: in_plane, melts
    use mesh, only: mesh_type
    use model, only: model_type
    use model_words, only: has_many
-   use no_estimates, only: at_corner, mark_of, no_reason, reason_inside_step, reason_of_run
+   use no_estimates, only: at_corner, mark_of, no_finer_value, no_reason, reason_inside_step, &
+      reason_of_run
    use quantity_types, only: quantity_type
    use records, only: body_uncertainty_type, contact_record_type, increment_record_type, &
       uncertainty_type
@@ -63,6 +65,8 @@ module summary
       real(dp), allocatable, private :: inelastic_strain(:, :)
       type(string_type), allocatable, private :: steps(:)   !! a line for each step and interface
       real(dp), allocatable :: solid_time          !! when the last point became solid [time]
+      !> (2, sections) forces of pre-tension sections and their uncertainties, NaN for none
+      real(dp), allocatable, private :: pre_tension(:, :)
       character(:), allocatable :: stability       !! whether it lasts; or empty
       real(dp), allocatable :: leading(:, :)       !! as stability_record_type
       real(dp), allocatable :: load_factor         !! of a point of a branch
@@ -105,6 +109,12 @@ contains
       if (allocated(self%solid_time)) deallocate (self%solid_time)
       if (allocated(record%solid_time)) self%solid_time = record%solid_time
       if (allocated(record%inelastic_strain)) self%inelastic_strain = record%inelastic_strain
+      if (allocated(record%pre_tension)) then
+         self%pre_tension = spread(record%pre_tension, 1, 2)
+         self%pre_tension(2, :) = ieee_value(1.0_dp, ieee_quiet_nan)
+         if (allocated(record%pre_tension_uncertainties)) self%pre_tension(2, :) = &
+            record%pre_tension_uncertainties
+      end if
       if (allocated(self%load_factor)) deallocate (self%load_factor)
       if (allocated(record%load_factor)) self%load_factor = record%load_factor
       if (record%is_fold) then
@@ -177,6 +187,8 @@ contains
          if (interfaces > 0 .and. steps > 1) most_lines = most_lines + 1 + told*steps
          if (any(model%steps%cycle%steps > 0)) most_lines = most_lines + 1
          if (any(melts(model%materials))) most_lines = most_lines + 1
+         if (allocated(model%couplings)) most_lines = most_lines + 1 + &
+            count(model%couplings%is_section())
          if (any(model%steps%stability_frequency > 0)) most_lines = most_lines + 2 + &
             maxval(model%steps%stability_modes)/leading_in_line
          most_lines = most_lines + count([any(model%materials%law%strains(1) > 0), &
@@ -224,6 +236,7 @@ contains
             end do
          end if
       end if
+      if (allocated(self%pre_tension)) call add_pre_tensions(self, model, lines)
       if (allocated(self%inelastic_strain)) call add_strains(self, model, lines)
       if (allocated(self%solid_time)) call append(lines, summary_line('all solid at', &
          self%solid_time, mark_of(reason_inside_step(model)), or_blank(model%units%time), ''))
@@ -232,6 +245,27 @@ contains
       if (allocated(self%leading)) call append(lines, leading_words(self%leading, or_blank( &
          model%units%time)))
    end subroutine add_lines
+
+   !> The forces of all pre-tension sections.
+   subroutine add_pre_tensions(self, model, lines)
+      class(summary_type), intent(in) :: self
+      type(model_type), intent(in) :: model
+      type(string_type), allocatable, intent(inout) :: lines(:)
+      integer :: nodes(size(self%pre_tension, 2)), i, reason
+
+      nodes = section_nodes(model%couplings)
+      if (size(nodes) == 0) return
+      reason = reason_inside_step(model)
+      call append(lines, 'pre-tension')
+      do i = 1, size(nodes)
+         associate (force => self%pre_tension(1, i), uncertainty => self%pre_tension(2, i))
+            if (reason == no_reason .and. ieee_is_nan(uncertainty)) reason = no_finer_value
+            call append(lines, summary_line('force', force, words_within(force, &
+               uncertainty, reason), unit_label('stress length^2', model%units), 'node '// &
+               to_text(model%mesh%node_number(nodes(i)))))
+         end associate
+      end do
+   end subroutine add_pre_tensions
 
    !> The largest inelastic strains where they are not among the maxima of bodies.
    subroutine add_strains(self, model, lines)
@@ -522,26 +556,32 @@ contains
       end do
    end function words_of
 
-   !> An uncertainty with two digits, and in per cent of a value that is not small beside it, or why
-   !> there is none.
+   !> The uncertainty of a quantity, or why there is none.
    pure function uncertainty_words(errors, q) result(words)
       class(uncertainty_type), intent(in) :: errors
       integer, intent(in) :: q                       ! the quantity
       character(:), allocatable :: words
+
+      words = words_within(errors%value(q), errors%total(q), errors%no_estimate(q))
+   end function uncertainty_words
+
+   !> An uncertainty with two digits, and in per cent of a value that is not small beside it, or why
+   !> there is none.
+   pure function words_within(value, total, why) result(words)
+      real(dp), intent(in) :: value, total
+      integer, intent(in) :: why
+      character(:), allocatable :: words
       character(uncertainty_width) :: column
       character(9) :: number
 
-      associate (total => errors%total(q), value => errors%value(q), why => errors%no_estimate(q))
-         if (why /= no_reason) then
-            words = mark_of(why)
-            return
-         end if
-         number = few_digits(total)
-         column = ' +- '//number
-         if (total < 10.0_dp*abs(value)) column = ' +- '//number//'('// &
-            percent(total/abs(value))//')'
-      end associate
+      if (why /= no_reason) then
+         words = mark_of(why)
+         return
+      end if
+      number = few_digits(total)
+      column = ' +- '//number
+      if (total < 10.0_dp*abs(value)) column = ' +- '//number//'('//percent(total/abs(value))//')'
       words = column
-   end function uncertainty_words
+   end function words_within
 
 end module summary

@@ -1,12 +1,14 @@
 """*PRE-TENSION SECTION and *BOUNDARY, FIXED: CalculiX on the same decks, and closed forms."""
 
+import re
+
 import h5py
 import numpy as np
 import pytest
 from blocks import without_unused_surfaces, write
 from calculix import DIGITS, assert_within, calculix, differences, thercon
 from changes import note_changes
-from deck_runs import solve
+from deck_runs import run, solve
 from physics import judge, material, mesh
 
 MODULUS, EXPANSION, LENGTH, HEIGHT = 1000.0, 1e-5, 4.0, 1.0
@@ -106,6 +108,16 @@ def test_a_bar_between_walls(tmp_path, options):
         ("S11", "MAX", "LAST", force - MODULUS * EXPANSION * 100.0, 1e-9),
         ("S11", "MIN", "LAST", force - MODULUS * EXPANSION * 100.0, 1e-9),
         ("force_imbalance", "", "LAST", 0.0, 1e-10, "ABS")])
+
+
+@pytest.mark.parametrize(("errors", "words"), [
+    ("LAST", r"\(no estimate: path; ERRORS=FULL\)"), ("FULL", r"\+- 0 +\(0 %\)")])
+def test_the_summary_has_the_force_of_a_section(tmp_path, errors, words):
+    """One that the deck prescribes has no error."""
+    deck = write(tmp_path / "deck.inp", [f"*OPTIONS, ERRORS={errors}"], without_unused_surfaces(
+        [*bar(), *STEP, *HELD, "*CLOAD", "900, 1, 10.", "*END STEP"]))
+    told = run("run", deck, "--out", tmp_path).stdout
+    assert re.search(rf"\n  pre-tension\n    force +10 {words}, node 900\n", told), told
 
 
 def test_heat_crosses_a_section_as_if_there_were_none(tmp_path):
