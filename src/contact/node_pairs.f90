@@ -157,13 +157,14 @@ contains
       goes_on = body_angle(mesh, node) > going_on
    end function goes_on
 
-   !> Angle that the elements at a corner fill.
+   !> Angle that the elements at a corner fill; none at a point of a face that is no node of the mesh.
    pure real(dp) function body_angle(mesh, node)
       type(mesh_type), intent(in) :: mesh
       integer, intent(in) :: node
       integer :: e, k
 
       body_angle = 0.0_dp
+      if (node > size(mesh%node_body)) return
       do e = 1, size(mesh%element_number)
          if (mesh%element_body(e) /= mesh%node_body(node)) cycle
          associate (n => element_corner_count(mesh%element_kind(e)))
