@@ -168,6 +168,25 @@ def test_a_front_passes_fine_elements_that_may_yield(tmp_path):
                             ("PEEQ", "BODY", "LAST", 0.0, 0.0, "ABS")])
 
 
+@pytest.mark.parametrize(("temperature", "warns"), [(500.0, True), (900.0, False)],
+                         ids=["melt", "solid"])
+@pytest.mark.parametrize("pair", ["HOT.BOTTOM, COLD.TOP", "COLD.TOP, HOT.BOTTOM"])
+def test_a_gap_beside_a_melt_is_named(tmp_path, pair, temperature, warns):
+    given = {name: material(name, (200e3, 0.3), expansion=1e-6, conductivity=0.1, density=1e-6,
+                            specific_heat=1000.0) for name in ("COLD", "HOT")}
+    given["HOT"][-1:] = ["*ANNEAL TEMPERATURE", f"{temperature!r}", given["HOT"][-1]]
+    process = run("run", "--quiet", "--out", tmp_path, write(tmp_path / "gap.inp", [
+        *mesh("COLD", [0.0, 1.0], [-1.0, 0.0], "CPS4"),
+        *mesh("HOT", [0.0, 1.0], [0.02, 1.0], "CPS4", first=101), *given["COLD"], *given["HOT"],
+        "*SURFACE INTERACTION, NAME=AIR", "*GAP LAW, TYPE=GAS", "5.E-5, 0.01",
+        f"*CONTACT PAIR, INTERACTION=AIR, NAME=FACE\n{pair}",
+        "*INITIAL CONDITIONS, TYPE=TEMPERATURE", "HOT, 700.", "COLD, 20.",
+        *step("*BOUNDARY", "COLD.BOTTOM, 1, 2", "HOT.TOP, 1, 2",
+              analysis="*COUPLED TEMPERATURE-DISPLACEMENT, DIRECT", times="1.E-4, 1.E-4")]))
+    assert process.returncode == 0, process.stderr
+    assert ("contact pair FACE opens where a face is above its *ANNEAL" in process.stderr) == warns
+
+
 def casting(*cards):
     """Return a square that solidifies between walls, whose stress follows its temperatures."""
     return [*melting(["1., 0.9, 1."], size=4, elastic=[(1e3, 0.3, 0.0), (500.0, 0.3, 1.0)],
