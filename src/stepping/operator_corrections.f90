@@ -276,16 +276,18 @@ contains
       last = self%left_over
       left_over = left_over/self%scale
       self%left_over = maxval(abs(left_over))
-      if (self%failed_element > 0) then
-         call set_error(error, status_no_convergence, words_of_law(self, model, next%temperature))
-         return
-      end if
-      self%is_settled = self%left_over <= settled
       self%asks_operators = .false.
       self%goes_back = .false.
       self%asks_capacity = .false.
       self%melting%jumps = .false.
+      self%is_settled = self%failed_element == 0 .and. self%left_over <= settled
       if (self%is_settled) return
+      if (self%failed_element > 0) then
+         call lead_back(self)
+         if (.not. self%goes_back) call set_error(error, status_no_convergence, &
+            words_of_law(self, model, next%temperature))
+         return
+      end if
       if (self%melting%acts .and. self%stage%stores_heat) call self%melting%move(model, &
          next%temperature)
       if (self%left_over < self%least_left_over) then
@@ -334,15 +336,23 @@ contains
          if (passes > 1 .and. left_over > slow*last) self%slow_passes = self%slow_passes + 1
          if (passes > 1 .and. left_over > grows*last) call start_mixing(self)
          self%asks_operators = passes > most_with_operators .or. self%slow_passes >= most_slow
-         if (self%elastic_part >= safe_part) return
-         self%goes_back = left_over > max(grows*max(last, self%least_left_over), astray)
-         if (self%asks_operators .and. is_renewed) self%goes_back = self%goes_back .or. &
-            self%least_left_over > contracts*self%renewed_with
-         if (.not. self%goes_back) return
-         self%asks_operators = .true.
-         if (is_renewed) self%elastic_part = safe_part
+         if (last > 0.0_dp .and. left_over > max(grows*last, astray) .or. &
+            self%asks_operators .and. is_renewed .and. self%least_left_over > contracts* &
+            self%renewed_with) call lead_back(self)
       end associate
    end subroutine judge_pass
+
+   !> Asks for operators at the pass that left least over, if there is any, and these have not had
+   !> half of the elasticity before.
+   subroutine lead_back(self)
+      type(corrections_type), intent(inout) :: self
+
+      self%goes_back = self%elastic_part < safe_part .and. self%passes <= most_passes .and. &
+         self%least_left_over < huge(self%left_over)
+      if (.not. self%goes_back) return
+      self%asks_operators = .true.
+      if (self%renewed_at > 0) self%elastic_part = safe_part
+   end subroutine lead_back
 
    !> Makes the pass that left least over the last one.
    subroutine go_back(self, next)
