@@ -155,6 +155,7 @@ contains
          call add_initial_stress(mesh, element, rule%count, points%stress)
          points%count = rule%count
          points%plane = mesh%element_plane(element)
+         points%stiffness = 1.0_dp
          do g = 1, rule%count
             points%tangent(:, :, g) = self%materials(self%at_point(element, g))%elasticity
             points%temperature(g) = dot_product(rule%shape(g, :rule%nodes), &
@@ -180,7 +181,7 @@ contains
       real(dp), intent(inout) :: numbers(:, :)               ! its history
       type(law_points_type) :: stiffer
       real(dp) :: change(4, 4), part, slope, strains(4, 4)
-      integer :: pass, search
+      integer :: g, pass, search
 
       strains = 0.0_dp
       do pass = 1, most_enhancements
@@ -189,7 +190,10 @@ contains
          ! points yield and unload by turns.
          part = merge(0.5_dp, elastic_part, pass > most_straight .and. modulo(pass, 2) == 0)
          stiffer = points
-         stiffer%tangent = (1.0_dp - part)*points%tangent + part*elastic%tangent
+         do g = 1, 4
+            stiffer%tangent(:, :, g) = (1.0_dp - part)*points%tangent(:, :, g) + &
+               part*points%stiffness(g)*elastic%tangent(:, :, g)
+         end do
          change = self%changes_of_modes(mesh, element, stiffer)
          if (maxval(abs(change)) <= settled*(maxval(abs(strains)) + &
             maxval(abs(elastic%strain(:4, :))))) return

@@ -4,9 +4,10 @@
 !> that thermoelasticity has where the material becomes solid, and by the temperature of the point.
 !> Above the annealing temperature that strain follows the deformation, and what was plastic or
 !> crept is 0. It is taken where the temperature passes, strains and temperatures being straight in
-!> an increment: the part of it that lies below alone makes stress. Where none does, a hundredth
-!> makes a drag, so that a melt that nothing holds stays where it is; no stress of it is left once
-!> the increment is over.
+!> an increment: the part of it that lies below alone makes stress. Where that is less than a
+!> hundredth, what is missing makes a drag, so that a melt that nothing holds stays where it is, and
+!> a point that is about to become solid is no softer than the melt beside it; no stress of the drag
+!> is left once the increment is over.
 module annealing
    use kinds, only: dp
    use material_laws, only: law_interval_type, law_points_type, material_law_type
@@ -66,11 +67,16 @@ contains
       if (associated(law%respond_solid)) call law%respond_solid(law, points, interval, &
          history(:law%annealing - 1, :))
       do g = 1, points%count
-         points%tangent(:, :, g) = part(g)*points%tangent(:, :, g)
-         if (part(g) > 0.0_dp) cycle
-         points%stress(g, :) = drag*melt%stress(g, :)
-         points%tangent(:, :, g) = drag*melt%tangent(:, :, g)
-         call forget(law, history(:, g))
+         if (part(g) <= 0.0_dp) then
+            points%stress(g, :) = 0.0_dp
+            call forget(law, history(:, g))
+         end if
+         points%stiffness(g) = max(part(g), drag)
+         associate (dragged => points%stiffness(g) - part(g))
+            points%stress(g, :) = points%stress(g, :) + dragged*melt%stress(g, :)
+            points%tangent(:, :, g) = part(g)*points%tangent(:, :, g) + &
+               dragged*melt%tangent(:, :, g)
+         end associate
       end do
    end subroutine respond
 

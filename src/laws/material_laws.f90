@@ -20,6 +20,8 @@ module material_laws
       real(dp) :: stress(most, 4) = 0.0_dp
       !> (4, 4, points) of stress by strain: of elasticity; the law replaces it [stress]
       real(dp) :: tangent(4, 4, most) = 0.0_dp
+      !> Part of the elasticity that a point resists with at most
+      real(dp) :: stiffness(most) = 1.0_dp
       logical :: failed = .false.                  !! whether the law found no stress
    end type law_points_type
 

@@ -373,10 +373,11 @@ contains
    subroutine renew_operators(run, model, attempt, error)
       type(simulation_type), intent(inout) :: run
       type(model_type), intent(in) :: model
-      type(attempt_type), intent(in) :: attempt
+      type(attempt_type), intent(inout) :: attempt
       type(error_type), allocatable, intent(out) :: error
       real(dp), allocatable :: tangent(:)
 
+      if (run%corrections%goes_back) call run%corrections%go_back(attempt%next)
       if (run%corrections%asks_capacity) then
          call run%bodies%set_melting(run%corrections%melting%slopes(model))
          call run%corrections%renew(model, run%bodies, attempt%before, attempt%next)

@@ -179,8 +179,8 @@ contains
          '; refine the mesh there, or take increments of at least this')
    end subroutine note_shock
 
-   !> Warns of temperatures beyond the first and last rows of tables of the bodies' materials, and
-   !> of pressures, gaps and temperatures beyond those of conductances.
+   !> Warns of temperatures beyond the first and last rows of tables of the bodies' materials, of
+   !> pressures, gaps and temperatures beyond those of conductances, and of gaps beside melts.
    subroutine warn_of_tables(model, points, record)
       type(model_type), intent(in) :: model
       type(connections_type), intent(in) :: points             !! of all interfaces
@@ -189,10 +189,50 @@ contains
 
       if (follows_temperatures(model)) call warn_of_materials(model, record)
       do i = 1, size(record%contacts)
-         if (allocated(record%contacts(i)%conductance)) call warn_of_law(model, i, &
-            points%slave(points%interface_start(i):points%interface_start(i + 1) - 1), record)
+         associate (slave => points%slave(points%interface_start(i): &
+            points%interface_start(i + 1) - 1))
+            if (.not. allocated(record%contacts(i)%conductance)) cycle
+            call warn_of_law(model, i, slave, record)
+            if (any(model%materials%law%annealing > 0)) call warn_of_melt(model, i, slave, record)
+         end associate
       end do
    end subroutine warn_of_tables
+
+   !> Warns of a gap beside a melt, which would follow the other face, but is computed as a solid that
+   !> resists little.
+   subroutine warn_of_melt(model, i, slave, record)
+      type(model_type), intent(in) :: model
+      integer, intent(in) :: i                                 ! index of the interface
+      integer, intent(in) :: slave(:)                          ! (m) slave nodes
+      type(increment_record_type), intent(inout) :: record     ! receives the warning
+      logical :: is_beside(size(slave))
+      integer :: k
+
+      associate (contact => record%contacts(i), pair => model%contacts(i))
+         is_beside = contact%contact_state == contact_open .and. (contact%slave_temperature > &
+            solid_below(pair%slave) .or. contact%master_temperature > solid_below(pair%master)) &
+            .and. contact%gap > margin*maxval(abs(model%mesh%coordinates))
+         if (.not. any(is_beside)) return
+         k = maxloc(contact%gap, dim=1, mask=is_beside)
+         call record%warn('contact pair '//pair%name//' opens where a face is above its '// &
+            '*ANNEAL TEMPERATURE: a melt would follow the other face, so that too little heat '// &
+            'crosses there: gap ', contact%gap(k), ' at slave node '// &
+            to_text(model%mesh%node_number(slave(k)))//', time '//to_text(record%time), &
+            severity=contact%gap(k))
+      end associate
+   contains
+      !> Annealing temperature of the elements at a surface.
+      pure real(dp) function solid_below(surface)
+         integer, intent(in) :: surface           ! index
+
+         solid_below = huge(1.0_dp)
+         if (.not. allocated(model%mesh%surfaces(surface)%faces)) return
+         associate (elements => model%mesh%surfaces(surface)%faces(1, :))
+            if (size(elements) > 0) solid_below = minval(model%materials(model%sections( &
+               model%mesh%element_section(elements))%material)%law%anneal_temperature)
+         end associate
+      end function solid_below
+   end subroutine warn_of_melt
 
    !> Those of materials.
    subroutine warn_of_materials(model, record)

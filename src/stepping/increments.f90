@@ -135,15 +135,20 @@ contains
          to_text(record%time)//'): '//error%message
    end subroutine try_again
 
-   !> What a run was carrying last before bodies that yield found no equilibrium; nothing for
-   !> others.
+   !> What a run was carrying last before bodies that yield found no equilibrium under forces that
+   !> grow; nothing for others.
    function words_of_collapse(run, model) result(words)
       type(simulation_type), intent(in) :: run
       type(model_type), intent(in) :: model
       character(:), allocatable :: words
+      logical :: grows
 
       words = ''
       if (.not. run%corrections%yields(model)) return
+      grows = any(abs(run%loads%nodal_forces()) > 0.0_dp)
+      if (allocated(run%state%force_load)) grows = any(abs(run%loads%nodal_forces()) > &
+         abs(run%state%force_load))
+      if (.not. grows) return
       associate (control => run%control)
          words = '; collapse: the last load that was carried is that of time '// &
             to_text(control%step_start + control%step_time)//', '//percent(control%step_time/ &

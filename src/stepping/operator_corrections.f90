@@ -13,6 +13,11 @@
 !> factors: operators are formed, with the tangents of the laws, after 25 passes, or six that each
 !> leave more than 0.7. After fewer the mixing knows too little of points that yield and stop in
 !> turn, and passes with the tangents of such a pass go round.
+!>
+!> Operators that are far too soft, formed where points yielded or were molten that now resist, lead
+!> astray: what is left over grows. New ones are then formed at the pass that left least over. If
+!> these lead astray, too, or to nothing better, the next ones have half of the elasticity, with
+!> which points that unload do not diverge.
 module operator_corrections
    use anderson_mixing, only: mixing_type
    use element_kinds, only: element_node_count
@@ -24,9 +29,10 @@ module operator_corrections
    use kinds, only: dp
    use materials, only: has_law, section_type, varies
    use mesh, only: mesh_type, nodes_per_element
+   use mesh_bodies, only: body_name
    use model, only: model_type
    use material_laws, only: law_points_type
-   use material_points, only: elastic_part, material_points_type
+   use material_points, only: least_elastic_part => elastic_part, material_points_type
    use point_histories, only: point_history_type
    use melting, only: melting_type
    use point_rules, only: integration_rules, load_rules, most => most_points_of_rule
@@ -46,6 +52,8 @@ module operator_corrections
    ! Of laws.
    real(dp), parameter :: slow = 0.7_dp         !! part that is left over by a slow pass
    real(dp), parameter :: grows = 2.0_dp        !! factor at which the mixing starts again
+   real(dp), parameter :: astray = 1.0e-4_dp    !! least that operators leave over which lead astray
+   real(dp), parameter :: safe_part = 0.5_dp    !! of the elasticity in tangents behind such ones
    real(dp), parameter :: least_rank = 1.0e-8_dp   !! tolerance of the mixing
    integer, parameter :: most_slow = 6, most_with_operators = 25   !! passes
 
@@ -68,13 +76,19 @@ module operator_corrections
       type(mixing_type) :: mixing
       real(dp) :: left_over = 0.0_dp               !! of the last pass, in scales
       integer :: slow_passes = 0                   !! since operators were formed
+      real(dp) :: renewed_with = 0.0_dp            !! what was left over where they were
+      real(dp) :: elastic_part = least_elastic_part   !! that tangents have of the elasticity
+      ! Of the pass of the stage that left least over, since nodes last passed solidus or liquidus:
+      real(dp) :: least_left_over = huge(1.0_dp)   !! in scales
+      real(dp), allocatable :: temperature(:), displacement(:)   !! (nodes), (2 nodes) [length]
       real(dp) :: largest_force = 0.0_dp           !! at a node of an element, of stresses [force]
       logical, public :: has_laws = .false.        !! whether any material has
       logical, public :: heats = .false.           !! whether inelastic work heats bodies
-      logical :: law_failed = .false.              !! whether one found no stress
+      integer :: failed_element = 0                !! index of the first whose law found no stress
       integer, public :: passes = 0                !! of the stage
       logical, public :: is_settled = .false.      !! whether a solution is that of its corrections
       logical, public :: asks_operators = .false.  !! whether operators are to be formed at it
+      logical, public :: goes_back = .false.       !! or at the pass that left least over
       logical, public :: asks_capacity = .false.   !! whether C alone is, where other nodes melt
       integer, public :: renewed_at = 0            !! pass after which they were last, in the stage
       logical, public :: corrects = .false.        !! whether the run has anything to correct
@@ -87,6 +101,7 @@ module operator_corrections
       procedure :: correct
       procedure :: renew
       procedure :: foresee_melting
+      procedure :: go_back
       procedure :: heat_beyond
       procedure :: true_contents
       procedure :: keep
@@ -172,6 +187,8 @@ contains
       self%renewed_at = 0
       self%slow_passes = 0
       self%left_over = 0.0_dp
+      self%least_left_over = huge(1.0_dp)
+      self%elastic_part = least_elastic_part
       call start_mixing(self)
       if (allocated(self%scale)) deallocate (self%scale)
       if (allocated(self%strain_before)) deallocate (self%strain_before)
@@ -260,18 +277,25 @@ contains
       last = self%left_over
       left_over = left_over/self%scale
       self%left_over = maxval(abs(left_over))
-      if (self%law_failed) then
-         call set_error(error, status_no_convergence, 'the law of a material finds no stress '// &
-            'for its strain; are its data in the units of the deck?')
-         return
-      end if
-      self%is_settled = self%left_over <= settled
       self%asks_operators = .false.
+      self%goes_back = .false.
       self%asks_capacity = .false.
       self%melting%jumps = .false.
+      self%is_settled = self%failed_element == 0 .and. self%left_over <= settled
       if (self%is_settled) return
+      if (self%failed_element > 0) then
+         call lead_back(self)
+         if (.not. self%goes_back) call set_error(error, status_no_convergence, &
+            words_of_law(self, model, next%temperature))
+         return
+      end if
       if (self%melting%acts .and. self%stage%stores_heat) call self%melting%move(model, &
          next%temperature)
+      if (self%left_over < self%least_left_over) then
+         self%least_left_over = self%left_over
+         self%temperature = next%temperature
+         self%displacement = next%displacement
+      end if
       self%asks_capacity = self%melting%jumps .and. self%melting%changes_rows
       if (size(self%elements) > 0 .and. .not. self%melting%jumps) call judge_pass(self, last)
       if (self%asks_operators) return
@@ -279,10 +303,12 @@ contains
          words = 'heat and stress of bodies do not follow their temperatures'
          if (self%has_laws) words = &
             'stresses of bodies that yield or creep do not follow their strains'
-         call set_error(error, status_no_convergence, words// &
-            ' within '//to_text(most_passes)//' corrections')
+         words = words//' within '//to_text(most_passes)//' corrections; most is left over '// &
+            words_of_place(model, node_of(self, maxloc(abs(left_over), dim=1)))
+         call set_error(error, status_no_convergence, words)
          return
       end if
+      if (self%melting%jumps) self%least_left_over = huge(1.0_dp)
       if (self%asks_capacity) return
       if (self%melting%jumps) then
          call start_mixing(self)
@@ -301,17 +327,85 @@ contains
       type(corrections_type), intent(inout) :: self
       real(dp), intent(in) :: last                           ! left over by the pass before
 
-      associate (passes => self%passes - self%renewed_at, left_over => self%left_over)
+      associate (passes => self%passes - self%renewed_at, left_over => self%left_over, &
+         is_renewed => self%renewed_at > 0)
          if (.not. self%has_laws) then
-            self%asks_operators = passes > 1 .and. self%renewed_at == 0 .and. &
+            self%asks_operators = passes > 1 .and. .not. is_renewed .and. &
                left_over > contracts*last
             return
          end if
          if (passes > 1 .and. left_over > slow*last) self%slow_passes = self%slow_passes + 1
          if (passes > 1 .and. left_over > grows*last) call start_mixing(self)
          self%asks_operators = passes > most_with_operators .or. self%slow_passes >= most_slow
+         if (last > 0.0_dp .and. left_over > max(grows*last, astray) .or. &
+            self%asks_operators .and. is_renewed .and. self%least_left_over > contracts* &
+            self%renewed_with) call lead_back(self)
       end associate
    end subroutine judge_pass
+
+   !> Asks for operators at the pass that left least over, if there is any, and these have not had
+   !> half of the elasticity before.
+   subroutine lead_back(self)
+      type(corrections_type), intent(inout) :: self
+
+      self%goes_back = self%elastic_part < safe_part .and. self%passes <= most_passes .and. &
+         self%least_left_over < huge(self%left_over)
+      if (.not. self%goes_back) return
+      self%asks_operators = .true.
+      if (self%renewed_at > 0) self%elastic_part = safe_part
+   end subroutine lead_back
+
+   !> Makes the pass that left least over the last one.
+   subroutine go_back(self, next)
+      class(corrections_type), intent(inout) :: self
+      type(solution_state_type), intent(inout) :: next       !! receives its solution
+
+      next%temperature = self%temperature
+      next%displacement = self%displacement
+      self%left_over = self%least_left_over
+   end subroutine go_back
+
+   !> Which law found no stress, and where.
+   function words_of_law(self, model, temperature) result(words)
+      type(corrections_type), intent(in) :: self
+      type(model_type), intent(in) :: model
+      real(dp), intent(in) :: temperature(:)                 ! (nodes)
+      character(:), allocatable :: words
+
+      associate (mesh => model%mesh, e => self%failed_element)
+         associate (nodes => mesh%element_nodes(:element_node_count(mesh%element_kind(e)), e), &
+            material => model%materials(model%sections(mesh%element_section(e))%material))
+            words = 'the law of a material'
+            if (allocated(material%name)) words = 'the law of '//material%name
+            words = words//' finds no stress for the strain of element '// &
+               to_text(mesh%element_number(e))//' '//words_of_place(model, nodes(1))// &
+               ', temperature '//to_text(sum(temperature(nodes))/size(nodes))// &
+               '; are its data in the units of the deck?'
+         end associate
+      end associate
+   end function words_of_law
+
+   !> Where a node lies.
+   function words_of_place(model, node) result(words)
+      type(model_type), intent(in) :: model
+      integer, intent(in) :: node                            ! index
+      character(:), allocatable :: words
+
+      words = 'at x = '//to_text(model%mesh%coordinates(1, node))//', y = '// &
+         to_text(model%mesh%coordinates(2, node))
+      if (model%mesh%node_body(node) > 0) words = words//' in '//body_name(model, &
+         model%mesh%node_body(node))
+   end function words_of_place
+
+   !> Node that one of the values belongs to.
+   pure integer function node_of(self, value) result(node)
+      type(corrections_type), intent(in) :: self
+      integer, intent(in) :: value                           ! index
+
+      associate (n => size(self%follows))
+         node = merge(1 + modulo(value - 1, n), (value - 2*n + 1)/2, value <= 2*n)
+      end associate
+   end function node_of
 
    !> Forgets the passes before.
    subroutine start_mixing(self)
@@ -358,6 +452,7 @@ contains
       ! Where a front passed on, they are of another state.
       self%renewed_at = merge(self%passes, 0, self%asks_operators)
       self%slow_passes = 0
+      self%renewed_with = self%left_over
       call start_mixing(self)
       if (self%asks_operators) deallocate (self%scale)
       self%heat_before = self%heat_beyond(model, bodies, before%temperature)
@@ -406,7 +501,7 @@ contains
       if (.not. yields) return
       growth = self%points%largest_growth(model%mesh, self%history%after, self%history%before)
       yields = any(growth(1, :) > 0.0_dp)
-      if (self%law_failed) yields = all(model%materials%law%strains(2) == 0)
+      if (self%failed_element > 0) yields = all(model%materials%law%strains(2) == 0)
    end function yields
 
    !> Corrections that temperatures and displacements at the end of a stage ask for.
@@ -504,7 +599,7 @@ contains
       forces = 0.0_dp
       if (allocated(self%initial_force)) forces = self%initial_force
       if (size(self%elements) == 0 .or. .not. allocated(bodies%mechanical%matrix%value)) return
-      self%law_failed = .false.
+      self%failed_element = 0
       self%elastic_strain = 0.0_dp
       self%largest_force = 0.0_dp
       call self%points%set_temperature(model%mesh, temperature, model%initial_temperature)
@@ -515,7 +610,7 @@ contains
          associate (mesh => model%mesh, e => self%elements(i), nodes => model%mesh%element_nodes( &
             :element_node_count(model%mesh%element_kind(self%elements(i))), self%elements(i)))
             call self%points%respond(mesh, e, u, warming, self%history, points)
-            self%law_failed = self%law_failed .or. points%failed
+            if (points%failed .and. self%failed_element == 0) self%failed_element = e
             if (self%points%follows_law(mesh, e)) self%elastic_strain = max(self%elastic_strain, &
                maxval(von_mises(transpose(points%stress(:points%count, :))))/ &
                (3*self%points%materials(self%points%at_point(e, 1))%elasticity(4, 4)))
@@ -567,8 +662,9 @@ contains
                associate (own => self%points%at_point(e, g))
                   ! The part that energy has: operators are symmetric. A part of the elasticity
                   ! keeps them regular.
-                  tangent(16*own - 15:16*own) = [(1.0_dp - elastic_part)/2*(points%tangent(:, :, &
-                     g) + transpose(points%tangent(:, :, g))) + elastic_part* &
+                  tangent(16*own - 15:16*own) = [(1.0_dp - self%elastic_part)/2*( &
+                     points%tangent(:, :, g) + transpose(points%tangent(:, :, g))) + &
+                     self%elastic_part*points%stiffness(g)* &
                      self%points%materials(own)%elasticity]
                end associate
             end do

@@ -132,6 +132,20 @@ def test_collapse_is_told_with_the_last_load(cards, load, tmp_path):
     assert last == pytest.approx(load, rel=3e-3)
 
 
+def test_bodies_that_yield_without_a_load_that_grows_do_not_collapse(tmp_path):
+    cards = [*mesh("BODY", [0.0, 1.0], [0.0, 1.0], "CPS4"),
+             *material("BODY", (YOUNG, POISSON), expansion=1e-5)]
+    cards[-1:] = ["*PLASTIC", "200.", cards[-1], "*INITIAL CONDITIONS, TYPE=TEMPERATURE",
+                  "BODY, 0."]
+    process = run("run", "--quiet", write(tmp_path / "deck.inp", [*cards, *step(
+        "*STATIC, DIRECT", "1., 1.", "*BOUNDARY", "BODY.LEFT, 1", "BODY.RIGHT, 1",
+        "BODY.BOTTOM, 2", "*TEMPERATURE", "BODY, 1.E6")]), "--out", tmp_path)
+    assert process.returncode == 2
+    assert ("the law of BODY finds no stress for the strain of element 1 at x = 0, y = 0 in body 1 "
+            "(of BODY, first node 1), temperature 1E+6;") in process.stderr
+    assert "collapse" not in process.stderr
+
+
 @pytest.mark.parametrize("kind", ["CPE4I", "CAX4I"])
 def test_modes_that_flow_freely_end_no_run(kind, tmp_path):
     # A part of the top of a perfectly plastic block is pushed in: no stress is beyond yield.

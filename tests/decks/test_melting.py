@@ -142,6 +142,63 @@ def test_a_solid_begins_within_the_stages_of_an_increment(tmp_path, scheme):
                             ("S11", "BODY", "LAST", 860.0, 1e-8)])
 
 
+@pytest.mark.parametrize(("cards", "warns"), [
+    (["*ANNEAL TEMPERATURE", "530."], False), ([], True),
+    (["*ANNEAL TEMPERATURE", "520."], True)], ids=["solid from there", "no solid", "solid below"])
+def test_secants_of_a_casting_may_begin_where_it_is_solid(tmp_path, cards, warns):
+    given = material("BODY", (200e3, 0.3), expansion=[(1e-5, 530.0), (0.0, 531.0)], zero=530.0)
+    process = run("check", write(tmp_path / "zero.inp", [
+        *mesh("BODY", [0.0, 1.0], [0.0, 1.0], "CPS4"), *given[:-1], *cards, given[-1],
+        *start(700.0), *step("*BOUNDARY", "BODY.LEFT, 1, 2", "*TEMPERATURE", "BODY, 100.",
+                             analysis="*STATIC")]))
+    assert ("far from the initial temperature" in process.stdout + process.stderr) == warns
+
+
+@pytest.mark.parametrize("kind", ["CPE4I", "CPS4I", "CAX4I"])
+def test_enhanced_modes_of_a_melt_are_found(tmp_path, kind):
+    """Uneven above its temperature: the modes work against nothing but the drag of the melt."""
+    given = material("BODY", (200e3, 0.3), expansion=1e-5)
+    cards = [*mesh("BODY", [1.0, 1.5, 2.0], [0.0, 1.0], kind), *given[:-1], "*ANNEAL TEMPERATURE",
+             "555.", given[-1], *start(700.0),
+             *step("*BOUNDARY", "BODY.BOTTOM, 1, 2", "*TEMPERATURE", "BODY, 650.",
+                   "BODY.LEFT, 600.", analysis="*STATIC, DIRECT", times="0.5, 1.")]
+    judge(tmp_path, cards, [("MISES", "BODY", "LAST", 0.0, 1e-9, "ABS")])
+
+
+def test_a_front_passes_fine_elements_that_may_yield(tmp_path):
+    """A bar that solidifies from its side. It shrinks freely and yields nowhere, but what is about
+    to become solid is soft, and passes may yield."""
+    width, height = (np.linspace(0.0, end, n).tolist() for end, n in ((20.0, 17), (10.0, 9)))
+    given = material("BODY", (40e3, 0.33), expansion=2.4e-5, conductivity=0.15, density=2.5e-6,
+                     specific_heat=1000.0)
+    cards = [*mesh("BODY", width, height, "CAX4"), *given[:-1], "*PLASTIC", "20.",
+             "*LATENT HEAT", "390.E3, 555., 615.", "*ANNEAL TEMPERATURE", "555.", given[-1],
+             *start(700.0), *step(
+                 "*BOUNDARY", "BODY.BOTTOM, 2", "*SFILM", "BODY.RIGHT, F, 20., 2.E-3",
+                 analysis="*COUPLED TEMPERATURE-DISPLACEMENT", times="0.1, 12.")]
+    judge(tmp_path, cards, [("MISES", "BODY.LEFT", "LAST", 0.0, 1e-9, "ABS"),
+                            ("PEEQ", "BODY", "LAST", 0.0, 0.0, "ABS")])
+
+
+@pytest.mark.parametrize(("temperature", "warns"), [(500.0, True), (900.0, False)],
+                         ids=["melt", "solid"])
+@pytest.mark.parametrize("pair", ["HOT.BOTTOM, COLD.TOP", "COLD.TOP, HOT.BOTTOM"])
+def test_a_gap_beside_a_melt_is_named(tmp_path, pair, temperature, warns):
+    given = {name: material(name, (200e3, 0.3), expansion=1e-6, conductivity=0.1, density=1e-6,
+                            specific_heat=1000.0) for name in ("COLD", "HOT")}
+    given["HOT"][-1:] = ["*ANNEAL TEMPERATURE", f"{temperature!r}", given["HOT"][-1]]
+    process = run("run", "--quiet", "--out", tmp_path, write(tmp_path / "gap.inp", [
+        *mesh("COLD", [0.0, 1.0], [-1.0, 0.0], "CPS4"),
+        *mesh("HOT", [0.0, 1.0], [0.02, 1.0], "CPS4", first=101), *given["COLD"], *given["HOT"],
+        "*SURFACE INTERACTION, NAME=AIR", "*GAP LAW, TYPE=GAS", "5.E-5, 0.01",
+        f"*CONTACT PAIR, INTERACTION=AIR, NAME=FACE\n{pair}",
+        "*INITIAL CONDITIONS, TYPE=TEMPERATURE", "HOT, 700.", "COLD, 20.",
+        *step("*BOUNDARY", "COLD.BOTTOM, 1, 2", "HOT.TOP, 1, 2",
+              analysis="*COUPLED TEMPERATURE-DISPLACEMENT, DIRECT", times="1.E-4, 1.E-4")]))
+    assert process.returncode == 0, process.stderr
+    assert ("contact pair FACE opens where a face is above its *ANNEAL" in process.stderr) == warns
+
+
 def casting(*cards):
     """Return a square that solidifies between walls, whose stress follows its temperatures."""
     return [*melting(["1., 0.9, 1."], size=4, elastic=[(1e3, 0.3, 0.0), (500.0, 0.3, 1.0)],

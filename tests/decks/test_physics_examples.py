@@ -286,7 +286,9 @@ def solved(tmp_path_factory):
     def result(name):
         process = run("run", "--quiet", EXAMPLES / f"{name}.inp", "--out", folder, "--errors", "no")
         assert process.returncode == 0, process.stderr
-        assert process.stderr == ""
+        # The melt of the casting does not follow its die.
+        assert all("opens where a face is above its *ANNEAL" in line
+                   for line in process.stderr.splitlines())
         return folder / f"{name}.vtkhdf"
 
     return result

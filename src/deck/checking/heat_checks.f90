@@ -177,6 +177,9 @@ contains
                is_told = .true.
             end if
             if (e == 0 .or. .not. follows_temperature(material, of_expansion)) cycle
+            ! Strains of a solid count from where it forms.
+            if (material%law%annealing > 0 .and. material%no_strain <= &
+               material%law%anneal_temperature) cycle
             i = findloc(material%given%kind, of_expansion, dim=1)
             initial = deck%model%initial_temperature(deck%mesh%element_nodes(1, e))
             associate (rows => material%given(i)%temperature)
