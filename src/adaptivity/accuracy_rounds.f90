@@ -17,7 +17,8 @@ module accuracy_rounds
    use interface_quantities, only: contact_width, is_end_of_face, peak_is_at_end, spacing_at
    use kinds, only: dp
    use model, only: model_type
-   use no_estimates, only: at_corner, grows, no_reason, of_path, of_sliding, reason_of_run, remains
+   use no_estimates, only: at_corner, grows, no_reason, of_path, of_sliding, reason_of_run, &
+      remains, slides_far
    use quantity_types, only: find_quantity, quantity_type
    use records, only: contact_record_type, increment_record_type, uncertainty_type
    use text, only: to_text
@@ -362,7 +363,7 @@ contains
       integer, intent(in) :: most_rounds
       logical, intent(in) :: nothing_is_left     !! whether there is nothing to refine
       logical, intent(in) :: is_late             !! whether another round takes longer than is left
-      logical :: only_corners_are_missed
+      logical :: only_corners_are_missed, only_slides_are_missed
 
       call name_idle(self)
       self%reason = ''
@@ -370,8 +371,12 @@ contains
       associate (findings => self%rounds(size(self%rounds))%findings)
          ! No mesh brings a pressure at a corner to its target.
          only_corners_are_missed = all(findings%is_met() .or. findings%no_estimate == at_corner)
+         only_slides_are_missed = all(findings%is_met() .or. findings%no_estimate == slides_far)
       end associate
-      if (only_corners_are_missed) then
+      if (only_slides_are_missed) then
+         self%reason = 'no finer mesh helps faces that slide beyond their contact points: take '// &
+            'SLIDING=FINITE on *CONTACT PAIR'
+      else if (only_corners_are_missed) then
          self%reason = 'a pressure without a limit meets no target: ask for other '// &
             'quantities, on *ACCURACY or as --accuracy force=5%'
       else if (self%stands_still()) then

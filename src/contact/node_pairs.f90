@@ -157,7 +157,8 @@ contains
       goes_on = body_angle(mesh, node) > going_on
    end function goes_on
 
-   !> Angle that the elements at a corner fill; none at a point of a face that is no node of the mesh.
+   !> Angle that the elements at a corner fill; none at a point of a face that is no node of the
+   !> mesh.
    pure real(dp) function body_angle(mesh, node)
       type(mesh_type), intent(in) :: mesh
       integer, intent(in) :: node

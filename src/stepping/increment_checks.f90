@@ -198,8 +198,8 @@ contains
       end do
    end subroutine warn_of_tables
 
-   !> Warns of a gap beside a melt, which would follow the other face, but is computed as a solid that
-   !> resists little.
+   !> Warns of a gap beside a melt, which would follow the other face, but is computed as a solid
+   !> that resists little.
    subroutine warn_of_melt(model, i, slave, record)
       type(model_type), intent(in) :: model
       integer, intent(in) :: i                                 ! index of the interface

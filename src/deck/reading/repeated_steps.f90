@@ -72,6 +72,8 @@ contains
             if (.not. is_closed) exit
             found = found + 1
             if (found == steps) return
+         case default
+            cycle
          end select
       end do
       first_card = 0
