@@ -9,7 +9,10 @@ module face_wear
    use solution_state, only: solution_state_type
    implicit none
    private
-   public :: wear_by_pressure, wear_faces, worn_overlaps
+   public :: wear_by_pressure, wear_faces, worn_overlaps, body_compliance
+
+   !> Compliance beside that of the bodies below which rounding of gaps would be forces.
+   real(dp), parameter :: rigid = 1.0e-10_dp
 
 contains
 
@@ -48,18 +51,34 @@ contains
       end associate
    end function wear_by_pressure
 
+   !> How far the bodies give way at each contact point to a pressure there alone.
+   function body_compliance(bodies) result(compliance)
+      type(reduced_bodies_type), intent(in) :: bodies
+      real(dp) :: compliance(size(bodies%points%weight))    !! (m) [length/stress]
+      integer :: k
+
+      compliance = 0.0_dp
+      do k = 1, size(compliance)
+         associate (stiffness => bodies%equilibrium%contact%alone(k))
+            if (stiffness > 0.0_dp) compliance(k) = bodies%points%weight(k)/stiffness
+         end associate
+      end do
+   end function body_compliance
+
    !> Laws of overlap of contact points that wear, beside those of soft faces.
-   pure function worn_overlaps(bodies, by_pressure) result(overlap)
+   function worn_overlaps(bodies, by_pressure) result(overlap)
       type(reduced_bodies_type), intent(in) :: bodies
       real(dp), intent(in) :: by_pressure(:)                !! (m) as above
       type(overlap_law_type), allocatable :: overlap(:)     !! (m)
+      real(dp) :: compliance(size(by_pressure))
       integer :: k
 
+      compliance = body_compliance(bodies)
       allocate (overlap(size(by_pressure)))
       if (allocated(bodies%laws%overlap)) overlap = bodies%laws%overlap
       do k = 1, size(overlap)
          associate (opens => bodies%laws%worn_part(k)*by_pressure(k))
-            if (opens <= 0.0_dp .or. bodies%points%weight(k) <= 0.0_dp) cycle
+            if (bodies%points%weight(k) <= 0.0_dp .or. opens <= rigid*compliance(k)) cycle
             overlap(k)%overlap = [0.0_dp, opens]
             overlap(k)%pressure = [0.0_dp, 1.0_dp]
          end associate

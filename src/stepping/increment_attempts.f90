@@ -7,7 +7,7 @@ module increment_attempts
    use contact_system, only: closing_law_type, contact_open
    use controls, only: method_newton
    use coupled_increment, only: differ, judge_solution
-   use face_wear, only: wear_by_pressure, wear_faces
+   use face_wear, only: body_compliance, wear_by_pressure, wear_faces
    use energies, only: add_friction_work
    use errors, only: error_type, set_error, status_internal, status_no_convergence
    use friction_heating, only: nodal_friction_heat
@@ -315,8 +315,9 @@ contains
       ! An open contact point does not wear; that of the solution before it waits.
       if (is_same) by_pressure = merge(attempt%wear_by_pressure, by_pressure, &
          attempt%next%contact%contact_state == contact_open)
+      ! Beside the bodies' own compliance that of little wear is rounding.
       if (is_same) is_same = all(abs(by_pressure - attempt%wear_by_pressure) <= &
-         same_wear*maxval(by_pressure))
+         same_wear*max(maxval(by_pressure), body_compliance(run%bodies)))
       if (.not. is_same) attempt%wear_by_pressure = by_pressure
    end subroutine follow_wear
 

@@ -141,6 +141,21 @@ def test_wear_goes_with_a_slave_that_slides_by_any_distance(tmp_path):
     assert hard["worn_volume_master"][-1] == pytest.approx(K * PRESSURE * SPEED, rel=1e-6)
 
 
+@pytest.mark.parametrize("rate", [1e-6, 1e-20])
+def test_a_pad_that_is_only_pressed_needs_no_smaller_increment(tmp_path, rate):
+    """Its wear is far below what the bodies give way, where rounding of slip must not count."""
+    edges = np.linspace(0.0, 8.0, 9)
+    cards = [*mesh("PAD", [*edges], [0.0, 1.0, 2.0, 3.0, 4.0], "CPE4I"),
+             *mesh("RAIL", [*np.linspace(-4.0, 26.0, 31)], [-6.0, -4.5, -3.0, -1.5, 0.0], "CPE4I",
+                   first=501),
+             *material("PAD", (2000.0, 0.3)), *material("RAIL", (2.1e5, 0.3)),
+             "*SURFACE INTERACTION, NAME=I", "*FRICTION", "0.25", "*WEAR", f"{rate!r}, 1.",
+             "*CONTACT PAIR, INTERACTION=I, NAME=C, SLIDING=FINITE", "PAD.BOTTOM, RAIL.TOP",
+             "*BOUNDARY", "RAIL.BOTTOM, 1, 2", "PAD.TOP, 1", "*STEP", "*STATIC, DIRECT", "1., 1.",
+             "*DSLOAD", "PAD.TOP, P, 2.", "*END STEP"]
+    assert state(tmp_path, cards)["normal_force"][-1] == pytest.approx(16.0, rel=1e-6)
+
+
 def test_a_motion_to_and_fro_wears_both_ways(tmp_path):
     found = state(tmp_path, bar(0.1, force=PRESSURE, steps=2))
     assert found["wear_slave"][-1] == pytest.approx(2 * K * PRESSURE * SPEED, rel=1e-8)
