@@ -92,7 +92,7 @@ def contact_data(result, contact):
     windows = [contact.window(coordinate, of_loads=loads) for loads in (False, True)]
     return {
         "name": contact.name,
-        "axis": name,
+        "axis": f"{name} of the slave as drawn" if contact.slides else name,
         "at": packed(coordinate),
         "pieces": [[piece.start, piece.stop - 1] for piece in contact.pieces],
         "windows": dict(zip(("zones", "profiles"), windows)),
