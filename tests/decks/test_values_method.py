@@ -326,14 +326,14 @@ def test_every_field_of_a_check(tmp_path, right, wrong):
 @pytest.mark.changes("VERIFY, KIND", "VERIFY, SOURCE")
 def test_kind_and_source_of_a_check_are_printed(tmp_path):
     """Of every kind a failed check is status 4."""
-    cards = {kind: [f'*VERIFY, KIND={kind}, SOURCE="from {kind.title()}"',
+    cards = {kind: [f'*VERIFY, KIND={kind}, SOURCE="from {kind.title()}, p. 7"',
                     "S22, BODY, LAST, -6., 1.E-9"]
              for kind in ("ANALYTIC", "EXTERNAL", "LEGACY", "FIGURE", "REGRESSION")}
     for kind, own in cards.items():
         status, text = checked(tmp_path, *own)
         assert status == 4
         assert [other for other in cards if f" {other} " in text] == [kind]
-        assert f"source: from {kind.title()}\n" in text
+        assert f"source: from {kind.title()}, p. 7\n" in text
     note_changes(cards["LEGACY"], cards["FIGURE"])
 
 

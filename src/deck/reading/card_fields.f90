@@ -47,7 +47,8 @@ contains
    end function last_text
 
    !> Splits a line at its commas. Quotes stay in the fields, but for one that is not closed; a
-   !> comma inside quotes, but for those of FORMAT=, and a quote without its end are errors.
+   !> comma inside quotes, but for those of FORMAT= and SOURCE=, and a quote without its end are
+   !> errors.
    subroutine split_fields(line, image, report, fields)
       character(*), intent(in) :: line                            !! card image
       integer, intent(in) :: image                                !! its running number
@@ -55,9 +56,9 @@ contains
       type(field_type), allocatable, intent(out) :: fields(:)     !! at least one field
       integer :: commas(len(line) + 1)
       integer :: i, n, first, opened, start, told
-      logical :: is_format
+      logical :: holds_commas
 
-      is_format = .false.
+      holds_commas = .false.
       told = 0
       opened = 0
       n = 0
@@ -66,9 +67,10 @@ contains
             opened = merge(i, 0, opened == 0)
             first = 1
             if (n > 0) first = commas(n) + 1
-            if (opened > 0) is_format = to_upper(without_blanks(line(first:i - 1))) == 'FORMAT='
+            if (opened > 0) holds_commas = any(to_upper(without_blanks(line(first:i - 1))) == &
+               ['FORMAT=', 'SOURCE='])
          else if (line(i:i) == ',') then
-            if (opened > 0 .and. is_format) then
+            if (opened > 0 .and. holds_commas) then
                cycle
             else if (opened > 0) then
                if (opened /= told) call report%error(place_type(image, i), &
