@@ -275,8 +275,8 @@ contains
       call divide_model(self%model, self%division)
       call hold_new_nodes(self%division, self%model)
       call keep_to_equations(self%division, self%model)
-      if (model%has_solver_by_size) self%model%solver = default_solver(merge(2.0_dp, 1.0_dp, &
-         any(solves_mechanics(model%steps%analysis)))*self%division%nodes_after)
+      if (model%has_solver_by_size) self%model%solver = default_solver( &
+         real(self%division%nodes_after, dp), any(solves_mechanics(model%steps%analysis)))
       allocate (self%run)
    end subroutine divide_elements
 

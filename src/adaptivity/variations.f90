@@ -250,16 +250,15 @@ contains
    subroutine choose_solver(model)
       type(model_type), intent(inout) :: model
       character(:), allocatable :: reason
-      integer :: unknowns
+      logical :: with_mechanics
 
-      unknowns = size(model%mesh%node_number)
-      reason = ' temperatures'
-      if (any(solves_mechanics(model%steps%analysis))) then
-         unknowns = 2*unknowns
-         reason = ' displacements'
-      end if
-      reason = ', because the nodes have '//to_text(unknowns)//reason
-      model%solver = default_solver(real(unknowns, dp))
+      with_mechanics = any(solves_mechanics(model%steps%analysis))
+      associate (nodes => size(model%mesh%node_number))
+         reason = ', because the nodes have '//to_text(merge(2, 1, with_mechanics)*nodes)// &
+            merge(' displacements', ' temperatures ', with_mechanics)
+         model%solver = default_solver(real(nodes, dp), with_mechanics)
+      end associate
+      reason = trim(reason)
       if (model%solver == solver_mumps) then
          call append(model%notes, 'no *SOLVER: MUMPS'//reason//' (SKYLINE below '// &
             to_text(mumps_from)//')')

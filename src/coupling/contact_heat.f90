@@ -269,11 +269,7 @@ contains
          residual = maxval([0.0_dp, abs(log_ratio(wanted, workspace%pass%omega))])
          if (residual <= rounding .or. (residual <= converged .and. residual >= 0.5_dp*last)) return
          if (residual < last .or. part < shortest) then
-            if (heat%schur%is_sparse()) then
-               step = step_by_products(bodies, heat, data, workspace, jump, wanted)
-            else
-               step = newton_step(bodies, heat, data, workspace, jump, wanted)
-            end if
+            step = newton_step(bodies, heat, data, workspace, jump, wanted)
             base = workspace%pass%omega
             last = residual
             part = 1.0_dp
@@ -299,61 +295,47 @@ contains
       end if
    end function log_ratio
 
-   !> Newton's step of log omega; towards the values wanted where there is none.
+   !> Newton's step of log omega; towards the values wanted where there is none. With changes
+   !> W dlog omega for unknowns its equation is that of with_temperatures, which a sparse tail has.
    function newton_step(bodies, heat, data, workspace, jump, wanted) result(step)
       type(reduced_bodies_type), intent(in) :: bodies
       type(heat_reduction_type), intent(in) :: heat
       type(increment_data_type), intent(in) :: data
       type(increment_workspace_type), intent(in) :: workspace
-      real(dp), intent(in) :: jump(:), wanted(:)
+      real(dp), intent(in) :: jump(:), wanted(:)            ! wanted: (m) W
       real(dp) :: step(size(wanted))
-      real(dp) :: matrix(size(wanted), size(wanted)), rest(size(wanted), 1)
+      real(dp), allocatable :: matrix(:, :), rest(:, :)
+      real(dp), dimension(size(wanted)) :: rate, scale
       type(jump_derivatives_type) :: by_omega
       type(lu_type) :: lu
       logical :: singular
       integer :: k
 
-      call jump_derivatives(bodies, data, workspace, jump, by_omega)
-      associate (omega => workspace%pass%omega)
-         rest(:, 1) = log_ratio(wanted, omega)
-         matrix = -derivative_by_temperature(bodies, heat, workspace, workspace%pass%coordinate, &
-            by_omega)
-         do k = 1, size(omega)
-            matrix(:, k) = matrix(:, k)*omega(k)/max(wanted, tiny(1.0_dp))
-         end do
-         do k = 1, size(omega)
-            if (wanted(k) <= 0.0_dp .or. omega(k) <= 0.0_dp) matrix(k, :) = 0.0_dp
-            matrix(k, k) = matrix(k, k) + 1.0_dp
-         end do
+      associate (omega => workspace%pass%omega, coordinate => workspace%pass%coordinate)
+         step = log_ratio(wanted, omega)
+         if (heat%schur%is_sparse()) then
+            scale = merge(wanted, 1.0_dp, wanted > 0.0_dp .and. omega > 0.0_dp)
+            rate = merge(heat_by_omega(bodies, data, workspace, jump)*omega/scale, 0.0_dp, &
+               wanted > 0.0_dp)
+            step = with_temperatures(bodies, heat, workspace, coordinate, rate, scale*step)/scale
+         else
+            call jump_derivatives(bodies, data, workspace, jump, by_omega)
+            matrix = -derivative_by_temperature(bodies, heat, workspace, coordinate, by_omega)
+            do k = 1, size(omega)
+               matrix(:, k) = matrix(:, k)*omega(k)/max(wanted, tiny(1.0_dp))
+            end do
+            do k = 1, size(omega)
+               if (wanted(k) <= 0.0_dp .or. omega(k) <= 0.0_dp) matrix(k, :) = 0.0_dp
+               matrix(k, k) = matrix(k, k) + 1.0_dp
+            end do
+            rest = reshape(step, [size(step), 1])
+            call lu%factor(matrix, singular)
+            if (.not. singular) call lu%solve(rest)
+            step = rest(:, 1)
+         end if
       end associate
-      call lu%factor(matrix, singular)
-      if (.not. singular) call lu%solve(rest)
-      step = min(max(rest(:, 1), -longest_step), longest_step)
+      step = min(max(step, -longest_step), longest_step)
    end function newton_step
-
-   !> The same step where no matrix between all contact points is formed.
-   function step_by_products(bodies, heat, data, workspace, jump, wanted) result(step)
-      type(reduced_bodies_type), intent(in) :: bodies
-      type(heat_reduction_type), intent(in) :: heat
-      type(increment_data_type), intent(in) :: data
-      type(increment_workspace_type), intent(in) :: workspace
-      real(dp), intent(in) :: jump(:), wanted(:)
-      real(dp) :: step(size(wanted))
-      real(dp) :: part(size(wanted), 1), rate(size(wanted))
-      type(gmres_type) :: gmres
-
-      associate (omega => workspace%pass%omega)
-         rate = heat_by_omega(bodies, data, workspace, jump)*omega
-         call gmres%begin(log_ratio(wanted, omega), solved, min(size(step), most_products))
-         do while (gmres%wants_product)
-            part = changes_by_temperature(bodies, heat, workspace, workspace%pass%coordinate, &
-               tail_of_heats(bodies, workspace, rate*gmres%vector))
-            where (wanted <= 0.0_dp .or. omega <= 0.0_dp) part(:, 1) = 0.0_dp
-            call gmres%take(gmres%vector - part(:, 1)/max(wanted, tiny(1.0_dp)))
-         end do
-      end associate
-      step = min(max(gmres%solution(), -longest_step), longest_step)
-   end function step_by_products
 
    !> dW/domega of the solution that the factors belong to.
    function derivative_by_temperature(bodies, heat, workspace, coordinate, by_omega) &

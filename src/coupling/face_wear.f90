@@ -52,21 +52,17 @@ contains
    end function wear_by_pressure
 
    !> How far the bodies give way at each contact point to a pressure there alone.
-   function body_compliance(bodies) result(compliance)
+   pure function body_compliance(bodies) result(compliance)
       type(reduced_bodies_type), intent(in) :: bodies
       real(dp) :: compliance(size(bodies%points%weight))    !! (m) [length/stress]
-      integer :: k
 
       compliance = 0.0_dp
-      do k = 1, size(compliance)
-         associate (stiffness => bodies%equilibrium%contact%alone(k))
-            if (stiffness > 0.0_dp) compliance(k) = bodies%points%weight(k)/stiffness
-         end associate
-      end do
+      where (bodies%equilibrium%contact%alone > 0.0_dp) compliance = bodies%points%weight/ &
+         bodies%equilibrium%contact%alone
    end function body_compliance
 
    !> Laws of overlap of contact points that wear, beside those of soft faces.
-   function worn_overlaps(bodies, by_pressure) result(overlap)
+   pure function worn_overlaps(bodies, by_pressure) result(overlap)
       type(reduced_bodies_type), intent(in) :: bodies
       real(dp), intent(in) :: by_pressure(:)                !! (m) as above
       type(overlap_law_type), allocatable :: overlap(:)     !! (m)

@@ -25,7 +25,7 @@ module newton
    use kinds, only: dp
    implicit none
    private
-   public :: newton_type
+   public :: newton_type, inertias, leaves_rest, longest_time_step
 
    real(dp), parameter :: least_fall = 0.1_dp         !! of a measure by a full step, needed
    integer, parameter :: patience = 1           !! better passes in spite of which one is taken
@@ -250,7 +250,7 @@ contains
       self%step = -self%rest
       if (allocated(self%full_step)) self%step = self%full_step
       if (.not. allocated(self%jacobian)) return
-      inertia = inertias(self, graph)
+      inertia = inertias(graph, self%coordinate, [(self%jacobian(k, k), k=1, size(step))])
       if (self%time_step < endless) self%time_step = min(self%time_step, &
          stable_time_step(self, inertia))
       matrix = self%jacobian
@@ -258,10 +258,8 @@ contains
       do k = 1, size(step)
          if (self%time_step < endless) matrix(k, k) = matrix(k, k) + &
             inertia(k)/self%time_step
-         if (.not. graph(k)%rests(self%coordinate(k))) cycle
-         ! No conductance at which the contact point may rest brings its opening to 0: it does not
-         ! rest.
-         if (sum(abs(self%jacobian(k, :)))*graph(k)%width > abs(self%rest(k))) cycle
+         if (.not. leaves_rest(graph(k), self%coordinate(k), sum(abs(self%jacobian(k, :))), &
+            self%rest(k))) cycle
          matrix(k, :) = 0.0_dp
          matrix(k, k) = 1.0_dp
          self%own(k) = 0.0_dp
@@ -273,25 +271,30 @@ contains
       self%step = step(:, 1)
    end subroutine make_step
 
+   !> Whether a contact point does not rest any more: no conductance at which it may rest brings its
+   !> opening to 0.
+   elemental logical function leaves_rest(graph, coordinate, row, rest)
+      type(conductance_graph_type), intent(in) :: graph
+      real(dp), intent(in) :: coordinate       !! z [length]
+      real(dp), intent(in) :: row              !! sum of the magnitudes of its row of J
+      real(dp), intent(in) :: rest             !! its r [length]
+
+      leaves_rest = graph%rests(coordinate)
+      if (leaves_rest) leaves_rest = row*graph%width <= abs(rest)
+   end function leaves_rest
+
    !> The diagonal of M: 1, and for a contact point at rest what makes the time in which it goes
    !> through its rest that of the others, however long the rest is.
-   pure function inertias(self, graph) result(inertia)
-      type(newton_type), intent(in) :: self
-      type(conductance_graph_type), intent(in) :: graph(:)
-      real(dp) :: inertia(size(self%rest))
-      integer :: k
+   elemental real(dp) function inertias(graph, coordinate, own) result(inertia)
+      type(conductance_graph_type), intent(in) :: graph
+      real(dp), intent(in) :: coordinate       !! z [length]
+      real(dp), intent(in) :: own              !! its diagonal entry of J
 
       inertia = 1.0_dp
-      do k = 1, size(inertia)
-         if (graph(k)%rests(self%coordinate(k)) .and. abs(self%jacobian(k, k)) > 0.0_dp) then
-            inertia(k) = abs(self%jacobian(k, k))
-         end if
-      end do
+      if (graph%rests(coordinate) .and. abs(own) > 0.0_dp) inertia = abs(own)
    end function inertias
 
-   !> Largest tau with which (M/tau + J) dz = -r leads where M dz/dt = -r does: half of that at
-   !> which the matrix is singular. Where heat closes the gap it crosses, J has negative eigenvalues
-   !> on the way, and a longer step goes backwards.
+   !> As longest_time_step; huge where the eigenvalues are not found.
    function stable_time_step(self, inertia) result(tau)
       type(newton_type), intent(in) :: self
       real(dp), intent(in) :: inertia(:)
@@ -302,8 +305,17 @@ contains
       tau = huge(1.0_dp)
       call eigenvalues(-self%jacobian/spread(inertia, 2, size(inertia)), real_part, &
          imaginary_part, found)
-      if (.not. found) return
-      tau = 0.5_dp/max(maxval(real_part, mask=abs(imaginary_part) <= real_part), tiny(1.0_dp))
+      if (found) tau = longest_time_step(cmplx(real_part, imaginary_part, dp))
    end function stable_time_step
+
+   !> Largest tau with which (M/tau + J) dz = -r leads where M dz/dt = -r does: half of that at
+   !> which the matrix is singular. Where heat closes the gap it crosses, J has negative eigenvalues
+   !> on the way, and a longer step goes backwards.
+   pure real(dp) function longest_time_step(values) result(tau)
+      complex(dp), intent(in) :: values(:)     !! eigenvalues of -M^-1 J, the outer ones
+
+      tau = 0.5_dp/max(maxval(real(values, dp), mask=abs(aimag(values)) <= real(values, dp)), &
+         tiny(1.0_dp))
+   end function longest_time_step
 
 end module newton

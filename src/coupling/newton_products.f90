@@ -16,6 +16,7 @@ module newton_products
    use heat_reduction, only: heat_reduction_type
    use increment_data, only: trial_type
    use kinds, only: dp
+   use newton, only: inertias, leaves_rest, longest_time_step
    use reduced_bodies, only: reduced_bodies_type
    implicit none
    private
@@ -59,19 +60,14 @@ contains
          rest = pass%graph%opening(tangent%coordinate) - pass%opening
          diagonal = advance - pass%own*slope
          is_left = .false.
-         inertia = 1.0_dp
-         where (pass%graph%rests(tangent%coordinate) .and. abs(diagonal) > 0.0_dp) &
-            inertia = abs(diagonal)
+         inertia = inertias(pass%graph, tangent%coordinate, diagonal)
          if (pass%time_step < huge(1.0_dp)) then
             pass%time_step = min(pass%time_step, stable_time_step())
             inertia = inertia/pass%time_step
          else
             inertia = 0.0_dp
          end if
-         ! No conductance at which the contact point may rest brings its opening to 0: it does not
-         ! rest.
-         is_left = pass%graph%rests(tangent%coordinate) .and. &
-            abs(diagonal)*pass%graph%width <= abs(rest)
+         is_left = leaves_rest(pass%graph, tangent%coordinate, abs(diagonal), rest)
          rest = -rest
          where (is_left)
             rest = pass%graph%coordinate_of_opening(rest) - tangent%coordinate
@@ -119,8 +115,7 @@ contains
             call modes%take(-by_jacobian(modes%vector)/inertia)
          end do
          tau = huge(1.0_dp)
-         if (modes%found) tau = 0.5_dp/max(maxval(real(modes%value, dp), mask=abs(aimag( &
-            modes%value)) <= real(modes%value, dp)), tiny(1.0_dp))
+         if (modes%found) tau = longest_time_step(modes%value)
       end function stable_time_step
    end subroutine find_newton_step
 

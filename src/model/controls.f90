@@ -97,11 +97,13 @@ module controls
 
 contains
 
-   !> The solver of a deck without *SOLVER.
-   pure integer function default_solver(unknowns)
-      real(dp), intent(in) :: unknowns   !! displacements of all nodes; without them temperatures
+   !> The solver of a deck without *SOLVER: by its displacements, without mechanics temperatures.
+   pure integer function default_solver(nodes, with_mechanics)
+      real(dp), intent(in) :: nodes              !! number of all nodes
+      logical, intent(in) :: with_mechanics      !! whether any step solves it
 
-      default_solver = merge(solver_mumps, solver_skyline, unknowns >= mumps_from)
+      default_solver = merge(solver_mumps, solver_skyline, merge(2, 1, with_mechanics)*nodes >= &
+         mumps_from)
    end function default_solver
 
 end module controls

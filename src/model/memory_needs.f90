@@ -83,7 +83,7 @@ contains
       if (has_finer_mesh) bytes = bytes + finer*per_fine_entry*entries_of(kinds, .true., .true.)* &
          4.0_dp**levels
       solver = model%solver
-      if (solver == solver_by_size) solver = default_solver(merge(2, 1, mechanics)*nodes)
+      if (solver == solver_by_size) solver = default_solver(nodes, mechanics)
       if (solver == solver_mumps) then
          factors = mumps_factor*(dissected(2*nodes, mechanics) + dissected(nodes, heat))
       else

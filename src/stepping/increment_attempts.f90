@@ -406,17 +406,19 @@ contains
       associate (bodies => run%bodies, melting => run%corrections%melting, start => &
          attempt%before%temperature, equation => attempt%data%equation, stage => attempt%stage, &
          terms => run%bodies%thermal%map%by_unknowns%start)
-         call run%corrections%give(equation, attempt%next)
-         rhs = equation%history(bodies%thermal%matrix) + melting%contents(model, start)/ &
-            equation%duration
          temperature = start
          call melting%begin(model, attempt%before%stored*stage%size, temperature)
-         temperature = merge(run%loads%temperature%value, temperature, &
-            run%loads%temperature%active)
-         ! The heat of contact points is not in that equation.
-         if (size(bodies%points%weight) == 0) call melting%foresee(model, linear_combination( &
-            1.0_dp, bodies%thermal%matrix, 1.0_dp, equation%left_film(bodies%capacity)), rhs, &
-            equation%duration, terms(2:size(start) + 1) - terms(:size(start)) == 1, temperature)
+         ! The equation of heat alone does not have that of contact points.
+         if (size(bodies%points%weight) == 0) then
+            call run%corrections%give(equation, attempt%next)
+            rhs = equation%history(bodies%thermal%matrix) + melting%contents(model, start)/ &
+               equation%duration
+            temperature = merge(run%loads%temperature%value, temperature, &
+               run%loads%temperature%active)
+            call melting%foresee(model, linear_combination(1.0_dp, bodies%thermal%matrix, 1.0_dp, &
+               equation%left_film(bodies%capacity)), rhs, equation%duration, &
+               terms(2:size(start) + 1) - terms(:size(start)) == 1, temperature)
+         end if
          call bodies%set_melting(melting%slopes(model))
          call run%corrections%foresee_melting(model, bodies%melting, start)
          call equation%hold_heat(bodies%capacity, stage%duration, stage%temperature, &

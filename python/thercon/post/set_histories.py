@@ -14,7 +14,7 @@ from .units import unit_of
 KINDS = {"nodes": "node", "elements": "element"}
 OF_ROWS = ("increment", "time")
 OF_MEMBERS = (*KINDS.values(), "point")
-OF_RUNS = {"pre-tension": ("section", ("pre_tension",)),
+RUN_SETS = {"pre-tension": ("section", ("pre_tension",)),
            "reference nodes": ("reference node", ("U3", "UR1", "UR2", "RF3", "RM1", "RM2"))}
 
 
@@ -54,14 +54,14 @@ def set_histories(result):
             need(result.file["history"], isinstance(groups[name], h5py.Group),
                  f"{kind}/{name} is no group")
             found.append(read_set(groups[name], kind, word, text(name)))
-    return found + [of_run(result, name) for name, (_, keys) in OF_RUNS.items()
+    return found + [run_set(result, name) for name, (_, keys) in RUN_SETS.items()
                     if any(key in result.history for key in keys)]
 
 
-def of_run(result, name):
+def run_set(result, name):
     """Return the history of pre-tension sections or reference nodes, numbered in the order of the
     deck."""
-    word, keys = OF_RUNS[name]
+    word, keys = RUN_SETS[name]
     values = {key: result.history[key] for key in keys if key in result.history}
     columns = max(found.shape[1:] for found in values.values())
     units = {key: unit_of(text(result.file["history"][key].attrs.get("unit", ""))) for key in values}

@@ -183,7 +183,9 @@ contains
                wrong(faces(2, i), faces(1, i)) = wrong(faces(2, i), faces(1, i)) .or. inside(i)
             end do
             i = findloc(inside, .true., dim=1)
-            if (i > 0) i = merge(0, i, is_of_section(deck, deck%mesh%surfaces(s)%name))
+            if (i > 0) then
+               if (is_of_section(deck, deck%mesh%surfaces(s)%name)) i = 0
+            end if
             if (i > 0) call deck%error(deck%face_places(s)%items(i), 'face S'//to_text(faces(2, &
                i))//' of element '//to_text(deck%mesh%element_number(faces(1, i)))//' in '// &
                'surface '//deck%mesh%surfaces(s)%name//' lies inside a body: another element '// &

@@ -47,7 +47,7 @@ module unit_checks
    real(dp), parameter :: moduli(2) = [1.0e3_dp, 1.2e15_dp]         !! [Pa]
    real(dp), parameter :: conductivities(2) = [1.0e-2_dp, 1.0e4_dp] !! [W/(m K)]
    ! Of latent over specific heat: white phosphorus has 27, carbon 14,000.
-   real(dp), parameter :: melting_changes(2) = [5.0_dp, 2.0e4_dp]   !! [K]
+   real(dp), parameter :: latent_ratios(2) = [5.0_dp, 2.0e4_dp]   !! [K]
 
    real(dp), parameter :: other_digits = 0.01_dp   !! relative difference of a constant
    real(dp), parameter :: other_scale = 0.5_dp     !! difference of absolute zero [K]
@@ -97,23 +97,23 @@ contains
       end do
    end subroutine check_units
 
-   !> Warns of a latent heat that changes the temperature of no solid.
+   !> Warns of a latent heat that is none of a solid beside its specific heat.
    subroutine check_latent_heat(card, m, degree, deck)
       type(keyword_card_type), intent(in) :: card
       integer, intent(in) :: m                            ! index of its material, or 0
       real(dp), intent(in) :: degree                      ! [K], 0 where not known
       type(deck_type), intent(inout) :: deck
-      real(dp) :: change
+      real(dp) :: ratio
 
       if (m == 0 .or. degree <= 0.0_dp) return
       associate (material => deck%model%materials(m))
          if (.not. allocated(material%melting)) return
-         change = degree*sum(material%melting%content)/heat_capacity(material)
-         if (change < melting_changes(1) .or. change > melting_changes(2)) call deck%warning( &
-            card%place, 'the latent heat of '//material%name//' is what changes its '// &
-            'temperature by '//to_text(change)//' K, beyond the '//to_text(melting_changes(1))// &
-            ' to '//to_text(melting_changes(2))//' K of solids; give it in the units of '// &
-            '*SPECIFIC HEAT, such as J/kg, not kJ/kg')
+         ratio = degree*sum(material%melting%content)/heat_capacity(material)
+         if (ratio < latent_ratios(1) .or. ratio > latent_ratios(2)) call deck%warning( &
+            card%place, 'the latent heat of '//material%name//' is '//to_text(ratio)// &
+            ' K times its specific heat, beyond the '//to_text(latent_ratios(1))//' to '// &
+            to_text(latent_ratios(2))//' K of solids; give it in the units of *SPECIFIC HEAT, '// &
+            'such as J/kg, not kJ/kg')
       end associate
    end subroutine check_latent_heat
 
