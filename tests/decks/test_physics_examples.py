@@ -286,9 +286,10 @@ def solved(tmp_path_factory):
     def result(name):
         process = run("run", "--quiet", EXAMPLES / f"{name}.inp", "--out", folder, "--errors", "no")
         assert process.returncode == 0, process.stderr
-        # The melt of the casting does not follow its die.
-        assert all("opens where a face is above its *ANNEAL" in line
-                   for line in process.stderr.splitlines())
+        # The casting alone is warned of, once for each of its two gaps: the melt does not follow.
+        told = process.stderr.splitlines()
+        assert len(told) == (2 if name == "casting" else 0)
+        assert all("opens where a face is above its *ANNEAL" in line for line in told)
         return folder / f"{name}.vtkhdf"
 
     return result
