@@ -2,7 +2,8 @@
 !>
 !> Solve, correct every contact point that violates its condition, solve again. A set that comes
 !> back is left by correcting only the last offending contact point (Murty's least-index rule),
-!> which cannot cycle on the P-matrix of a frictionless problem.
+!> which cannot cycle on the P-matrix of a frictionless problem. Where that does not help, the
+!> interfaces whose sets come back follow a path, the others held as they are.
 !>
 !> Where contact alone holds a body, a set may leave it unconstrained. The body is then held softly
 !> where it was, and let go in steps, from the position that each step leads to (proximal point
@@ -108,42 +109,73 @@ contains
       type(error_type), allocatable, intent(out) :: error
       type(contact_state_type) :: forward, guess
       type(error_type), allocatable :: failure
+      logical :: restless(size(state%gap))
 
       guess = state
       work%anchor = positions(system, work, state)
       work%several = .false.
-      call search(system, load, work, state, error)
+      call search(system, load, work, state, restless, error)
       if (.not. allocated(error)) then
          work%several = work%turns_back(system)
          if (.not. work%several) return
          ! The path of states turns back here; one at which it goes on is better, where it is found.
          forward = state
-         call follow_lemke_path(system, load, work, forward, failure)
+         call follow_lemke_path(system, load, work, spread(.true., 1, size(restless)), forward, &
+            failure)
          if (.not. allocated(failure)) call work%solve_set(system, load, forward, failure)
          if (.not. allocated(failure)) state = forward
          return
       end if
-      state = guess
       if (work%driven) then
+         state = guess
          ! Bodies in a row that touch are pushed onto each other one by one, but close at once.
          where (touches(system, work, guess))
             state%contact_state = contact_slip
             state%direction = 0
          end where
-         call search(system, load, work, state, failure)
+         call search(system, load, work, state, restless, failure)
          if (.not. allocated(failure)) then
             if (allocated(error)) deallocate (error)
             return
          end if
-         state = guess
       end if
       if (system%motions%basis%count > 0) then
+         state = guess
          call hold_softly(system, load, work, state, error)
       else
-         call follow_lemke_path(system, load, work, state, error)
-         if (.not. allocated(error)) call work%solve_set(system, load, state, error)
+         call follow_paths(system, load, work, restless, state, error)
       end if
    end subroutine find_state
+
+   !> A state by paths of the interfaces whose sets come back, the others being held as they are,
+   !> each followed by a search that judges all; at last by a path of them all.
+   !> Errors: as follow_lemke_path.
+   subroutine follow_paths(system, load, work, restless, state, error)
+      type(contact_system_type), intent(in) :: system
+      real(dp), intent(in) :: load(:)
+      type(contact_workspace_type), intent(inout) :: work
+      logical, intent(inout) :: restless(:)      !! contact points of the sets that come back
+      type(contact_state_type), intent(inout) :: state
+      type(error_type), allocatable, intent(out) :: error
+      logical :: follows(size(restless))
+      integer :: i, followed
+
+      follows = .false.
+      do
+         followed = count(follows)
+         do i = 1, size(system%interface_start) - 1
+            associate (first => system%interface_start(i), last => system%interface_start(i + 1) - 1)
+               if (any(restless(first:last))) follows(first:last) = .true.
+            end associate
+         end do
+         if (count(follows) == followed) follows = .true.
+         call follow_lemke_path(system, load, work, follows, state, error)
+         if (all(follows)) exit
+         if (.not. allocated(error)) call search(system, load, work, state, restless, error)
+         if (.not. allocated(error)) return
+      end do
+      if (.not. allocated(error)) call work%solve_set(system, load, state, error)
+   end subroutine follow_paths
 
    !> Open contact points that touch.
    pure function touches(system, work, state)
@@ -157,18 +189,21 @@ contains
    end function touches
 
    !> Corrects the active set until nothing violates its condition.
-   !> Errors: as solve_set; the sets do not settle.
-   subroutine search(system, load, work, state, error)
+   !> Errors: as solve_set; the sets do not settle, and then restless contact points are those that
+   !> differ in the sets that come back.
+   subroutine search(system, load, work, state, restless, error)
       type(contact_system_type), intent(in) :: system
       real(dp), intent(in) :: load(:)
       type(contact_workspace_type), intent(inout) :: work
       type(contact_state_type), intent(inout) :: state
+      logical, intent(out) :: restless(:)        ! (m)
       type(error_type), allocatable, intent(out) :: error
       integer :: visited(size(state%contact_state), most_sets)
       integer :: next(2, size(state%contact_state)), k, set, since
       real(dp) :: excess(size(state%contact_state))
       logical :: corrected(size(state%contact_state)), one_at_a_time
 
+      restless = .false.
       one_at_a_time = .false.
       since = 1
       do set = 1, most_sets
@@ -182,7 +217,10 @@ contains
             if (all(visited(:, k) == visited(:, set))) exit
          end do
          if (k < set) then
-            if (one_at_a_time) exit   ! it would come back for ever
+            if (one_at_a_time) then   ! it would come back for ever
+               since = k
+               exit
+            end if
             one_at_a_time = .true.
             since = set
          end if
@@ -191,6 +229,9 @@ contains
             state%contact_state = next(1, :)
             state%direction = next(2, :)
          end where
+      end do
+      do k = since, min(set, most_sets)
+         restless = restless .or. visited(:, k) /= visited(:, since)
       end do
       call set_error(error, status_no_convergence, unsettled)
    end subroutine search
@@ -206,6 +247,7 @@ contains
       type(contact_workspace_type) :: soft
       real(dp) :: hold, softest
       real(dp), dimension(system%motions%basis%count) :: position, way
+      logical :: restless(size(state%gap))
       integer :: step
 
       position = system%motions%along(positions(system, work, state))
@@ -218,8 +260,8 @@ contains
          soft = work%another()
          soft%hold = hold
          associate (soft_load => load + hold*system%motions%combined(position))
-            call search(system, soft_load, soft, state, error)
-            if (allocated(error)) call follow_lemke_path(system, soft_load, soft, state, error)
+            call search(system, soft_load, soft, state, restless, error)
+            if (allocated(error)) call follow_paths(system, soft_load, soft, restless, state, error)
          end associate
          if (allocated(error)) return
          way = system%motions%along(positions(system, work, state)) - position

@@ -23,19 +23,21 @@ module lemke_path
    !> A straight piece of the path; columns are values at t = 0 and derivatives by t.
    type :: piece_type
       type(contact_state_type) :: base          !! state at t = 0
-      real(dp), allocatable :: cover(:)         !! (m) d [length]
+      real(dp), allocatable :: cover(:)         !! (m) d, 0 for those that do not follow [length]
       real(dp), allocatable :: slip(:, :)       !! (m, 2) slip [length]
       real(dp), allocatable :: slack(:, :, :)   !! (4, m, 2) what must not be negative
    end type piece_type
 
 contains
 
-   !> Contact state under a condensed load, the references of friction being given.
-   !> Errors: the supports alone do not hold the bodies; the path does not arrive.
-   subroutine follow_lemke_path(system, load, work, state, error)
+   !> Contact state under a condensed load, the references of friction being given, of the contact
+   !> points that follow the path. The others keep the rows of their states, whatever comes of it.
+   !> Errors: supports and the others do not hold the bodies; the path does not arrive.
+   subroutine follow_lemke_path(system, load, work, follows, state, error)
       type(contact_system_type), intent(in) :: system     !! the reduced system
       real(dp), intent(in) :: load(:)                     !! (tail) c [force]
       type(contact_workspace_type), intent(in) :: work    !! gaps, laws, hold
+      logical, intent(in) :: follows(:)                   !! (m)
       type(contact_state_type), intent(inout) :: state    !! references in, solution out
       type(error_type), allocatable, intent(out) :: error
       type(contact_workspace_type) :: path
@@ -45,15 +47,18 @@ contains
 
       path = work%another()
       path%hold = work%hold
-      piece%cover = [(1.0_dp + modulo(k*golden, 1.0_dp), k=1, size(state%contact_state))]
+      piece%cover = [(merge(1.0_dp + modulo(k*golden, 1.0_dp), 0.0_dp, follows(k)), &
+         k=1, size(state%contact_state))]
       allocate (piece%slip(size(piece%cover), 2), piece%slack(4, size(piece%cover), 2))
-      state%contact_state = contact_open
-      state%direction = 0
+      where (follows)
+         state%contact_state = contact_open
+         state%direction = 0
+      end where
       call solve_piece(system, load, work, path, state, piece, error)
       if (allocated(error)) return
-      t = max(maxval(-piece%base%gap/piece%cover), 0.0_dp)
+      t = max(maxval(-pack(piece%base%gap, follows)/pack(piece%cover, follows)), 0.0_dp)
       sense = -1
-      do n = 1, pieces_per_point*max(size(piece%cover), 1)
+      do n = 1, pieces_per_point*max(count(follows), 1)
          call next_event(piece, t, sense, k, event, step)
          if (sense < 0 .and. step >= t) then
             state = piece%base
@@ -117,6 +122,7 @@ contains
       event = 0
       step = huge(1.0_dp)
       do k = 1, size(piece%slip, 1)
+         if (piece%cover(k) <= 0.0_dp) cycle   ! it does not follow
          do i = 1, size(piece%slack, 1)
             along = sense*piece%slack(i, k, 2)
             if (along >= 0.0_dp) cycle
