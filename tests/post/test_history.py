@@ -19,6 +19,7 @@ sys.path[:0] = [str(TESTS / each) for each in ("decks", "reference")] + [str(TES
 from browser import Browser  # noqa: E402
 from comparing import coarse_pictures  # noqa: E402, F401  a fixture
 from physics import material, mesh  # noqa: E402
+from synthetic import write_result  # noqa: E402
 from test_prints import BODY, HELD, static  # noqa: E402
 from test_reached import WARM, judged  # noqa: E402
 from test_set_histories import solve  # noqa: E402
@@ -27,7 +28,9 @@ import thercon  # noqa: E402
 from thercon.post import history  # noqa: E402
 from thercon.post.cli import main as plot  # noqa: E402
 from thercon.post.report.cli import main as report  # noqa: E402
+from thercon.post.report.sets import of_sets  # noqa: E402
 from thercon.post.result import Result  # noqa: E402
+from thercon.post.set_histories import set_histories  # noqa: E402
 
 CARDS = ["*NODE PRINT, NSET=BLOCK.TOP, FREQUENCY=2", "U", "*NODE PRINT, NSET=BLOCK.BOTTOM, TOTALS=ONLY",
          "RF", "*EL PRINT, ELSET=BLOCK", "S"]
@@ -105,6 +108,26 @@ def test_a_result_without_histories_says_what_makes_them(tmp_path, capsys):
         "sets it keeps them\n")
 
 
+def test_what_is_zero_has_no_panel_and_reference_nodes_have_their_names(tmp_path):
+    path = tmp_path / "case.vtkhdf"
+    write_result(path, units="mm MPa W C", contacts=())
+    with h5py.File(path, "r+") as file:
+        del file["deck"]
+        file["deck"] = ["*SOLID SECTION, ELSET=A, MATERIAL=M, REF NODE=REFA",
+                        "*SOLID SECTION, ELSET=B, MATERIAL=M, REF NODE=9002"]
+        count = len(file["history/time"])
+        for key, unit, size in (("U3", "mm", 1.0), ("UR1", "-", 0.0), ("RM1", "MPa mm^3", 1e6),
+                                ("RM2", "MPa mm^3", 1e-6), ("RF3", "MPa mm^2", 2.0)):
+            file[f"history/{key}"] = size * np.ones((count, 2))
+            file[f"history/{key}"].attrs["unit"] = unit
+    with Result(path) as opened:
+        (nodes,) = set_histories(opened)
+        assert nodes.told() == ["U3", "RF3", "RM1"]
+        assert nodes.members == ["reference node REFA", "reference node 9002"]
+        assert nodes.units["RF3"] == "N"
+        assert [each["key"] for each in of_sets(opened, list)] == nodes.told()
+
+
 def test_forces_of_pre_tension_sections_are_drawn(tmp_path, capsys):
     """Two bars, held at both ends: the forces are those that the deck prescribes."""
     bars, forces = [], {"900": 5.0, "901": 7.0}
@@ -153,7 +176,7 @@ def test_the_page_has_a_chart_of_each_quantity(result, tmp_path):
     assert [curve["name"] for curve in few["curves"]] == [f"node {n}" for n in nodes]
     for k, curve in enumerate(few["curves"]):
         np.testing.assert_allclose(curve["values"], moved[:, k])
-    total = found["Total external force y of BLOCK.BOTTOM"]
+    total = found["Total reaction or load y of BLOCK.BOTTOM"]
     assert [curve["name"] for curve in total["curves"]] == [""]
 
 

@@ -11,6 +11,7 @@ TESTS = Path(__file__).resolve().parents[1]
 sys.path[:0] = [str(TESTS / "decks"), str(TESTS.parent / "python")]
 
 from blocks import write  # noqa: E402
+from matplotlib.collections import QuadMesh  # noqa: E402
 from comparing import coarse_pictures  # noqa: E402, F401  fixture
 from deck_runs import solve  # noqa: E402
 from pellets import rod  # noqa: E402
@@ -19,6 +20,7 @@ from synthetic import write_result  # noqa: E402
 from thercon.post import profiles, style, zones  # noqa: E402
 from thercon.post.cli import main as plot, parser  # noqa: E402
 from thercon.post.errors import UserError  # noqa: E402
+from thercon.post.report.tables import uncertainties  # noqa: E402
 from thercon.post.result import Result  # noqa: E402
 
 PELLETS = 11   # W10 comes before W2 by name
@@ -194,6 +196,51 @@ def test_profiles_of_a_stack_have_a_line_for_each_interface_along_its_own_coordi
                  zip(figure.legends[0].get_texts(), figure.legends[0].legend_handles)}
         assert [named[name] for name in names] == [line.get_color() for line in lines]
         style.plt.close(figure)
+
+
+@pytest.mark.parametrize("count", [9, 24, 25])
+def test_no_interface_is_missing_from_a_legend_that_does_not_say_so(tmp_path, count):
+    with Result(write_stack(tmp_path / "stack.vtkhdf", [f"P{k}" for k in range(count)])) as one:
+        figure = profile_picture(one).draw([])
+        named = [text.get_text() for text in figure.legends[0].get_texts()]
+        style.plt.close(figure)
+    if count <= 24:
+        assert {f"P{k}" for k in range(count)} <= set(named)
+    else:
+        assert named[-1] == f"{count - 8} more between these, in their order"
+
+
+def test_interfaces_are_in_the_order_of_the_deck_and_of_their_numbers(tmp_path):
+    names = ["END-P-2", "END-P-10", "GAP-P-1", "OTHER", "GAP", "SIDE.1"]
+    path = write_stack(tmp_path / "stack.vtkhdf", names)
+    with h5py.File(path, "r+") as file:
+        del file["deck"]
+        file["deck"] = ["*CONTACT PAIR, INTERACTION=GAS,", " NAME=Gap", "P-*, TUBE",
+                        "*Contact Pair, INTERACTION=DRY", "Side.1, TUBE",
+                        "*Contact Pair, NAME=END, INTERACTION=DRY", "P-*, Q-*"]
+    with Result(path) as one:
+        assert one.contact_names == ["GAP", "GAP-P-1", "SIDE.1", "END-P-2", "END-P-10", "OTHER"]
+
+
+@pytest.mark.parametrize("count", [6, 7])
+def test_tables_of_more_than_six_interfaces_are_folded(tmp_path, count):
+    with Result(write_stack(tmp_path / "stack.vtkhdf", [f"P{k}" for k in range(count)])) as one:
+        words = uncertainties(one)
+    assert words.count("<table>") == count
+    opened = f"<details><summary>{count} interfaces at the last increment</summary>"
+    assert words.startswith(opened) == (count > 6)
+
+
+def test_zones_end_at_the_last_increment(result):
+    """So nothing is tinted at loads that no increment has."""
+    with Result(result) as one:
+        for each in (zone_picture(one, pattern="W1"), zone_picture(one, pattern="W*")):
+            figure = each.draw([])
+            last = one.history["load" if each.rising else "time"][-1]
+            for mesh in figure.axes[0].collections:
+                if isinstance(mesh, QuadMesh):
+                    assert mesh.get_coordinates()[..., 0].max() == last
+            style.plt.close(figure)
 
 
 def test_a_zone_that_begins_and_ends_at_contact_points_has_a_symmetric_profile(tmp_path):

@@ -33,7 +33,7 @@ from thercon.post.errors import UserError  # noqa: E402
 from thercon.post.fine_mesh import refine  # noqa: E402
 from thercon.post.overlay import read_overlays  # noqa: E402
 from thercon.post.result import Result  # noqa: E402
-from thercon.post.units import Units  # noqa: E402
+from thercon.post.units import Units, unit_of  # noqa: E402
 from thercon.post.words import known_name  # noqa: E402
 
 
@@ -284,6 +284,20 @@ def test_courses_are_means_and_ranges_over_the_face_and_the_rates_of_the_model(d
     np.testing.assert_allclose(numbers(drawn["heat_into_the_model"]), np.linspace(5.0, 1.0, count))
     np.testing.assert_allclose(numbers(drawn["heat_of_friction"]), np.linspace(0.5, 2.0, count))
     assert np.isnan(numbers(drawn["heat_stored"])[0])
+
+
+def test_bands_are_told_where_they_are_seen(kept, result):
+    def words():
+        (figure,) = kept("courses", result)
+        return figure._supxlabel.get_text()
+
+    assert words() == "Lines are means over the face, bands reach from the smallest to the largest value"
+    with h5py.File(result, "r+") as file:
+        contact = file["contact/CYLINDER"]
+        for key in ("pressure", "gap"):
+            contact[key][...] = np.linspace(1.0, 2.0, len(contact[key]))[:, None]
+        contact["heat_flux"][...] = 0.0
+    assert words() == "Lines are means over the face"
 
 
 def test_faces_that_slide_are_drawn_where_they_are_with_their_forces(tabulate, result, tmp_path):
@@ -612,6 +626,33 @@ def test_a_picture_that_shows_a_part_of_the_face_says_what_it_leaves_out(kept, r
     assert label() == (words if picture == "profiles" else [])
 
 
+@pytest.mark.parametrize("rest", [0.01, 2.0])
+def test_no_part_of_a_face_is_called_hidden_that_the_axis_shows(kept, result, rest):
+    """Closed from x = 0 to 10; of the face, `rest` is beyond what is shown beside that."""
+    with h5py.File(result, "r+") as file:
+        contact = file["contact/CYLINDER"]
+        contact["x"][...] = np.append(np.linspace(0.0, 10.0, len(contact["x"]) - 1), 13.0 + rest)
+        contact["s"][...] = contact["x"][()]
+        contact["status"][...] = contact["x"][()] <= 10.0
+        contact["pressure"][...] = contact["status"][()]
+        contact["heat_flux"][...] = contact["status"][()]
+        contact["edges_contact"][...] = contact["edge_contact"][...] = np.nan
+        contact["edges_stick"][...] = contact["edge_stick"][...] = np.nan
+    (figure,) = kept("profiles", result)
+    is_shown = figure.axes[-1].get_xlim()[1] >= 13.0 + rest
+    assert is_shown == (rest < 1.0)
+    assert is_shown == ("not shown" not in figure.axes[-1].get_xlabel())
+
+
+@pytest.mark.parametrize("slope, name", [(0.5, "x"), (2.0, "s")])
+def test_places_on_a_steep_face_are_lengths_along_it(kept, result, slope, name):
+    with h5py.File(result, "r+") as file:
+        contact = file["contact/CYLINDER"]
+        contact["s"][...] = contact["x"][()] * np.hypot(1.0, slope)
+    (figure,) = kept("profiles", result)
+    assert figure.axes[-1].get_xlabel().startswith(f"${name}$")
+
+
 def test_the_open_part_that_carries_heat_is_shown(kept, result):
     """The profiles leave out 0.5 % of the heat on either side at most; zones, which show none, tell it."""
     with h5py.File(result, "r+") as file:
@@ -791,6 +832,16 @@ def test_values_that_differ_by_rounding_have_one_colour():
     values = np.array([0.0, 4.0, 4.0 + 1e-6, 10.0])
     levels = field_colours.limits(values, "von_mises", 10.0)
     np.testing.assert_array_equal(field_colours.settle(values, levels, 10.0), values)
+
+
+def test_a_motion_has_symmetric_colours_and_a_neutral_one_about_zero():
+    levels = field_colours.limits(np.array([-0.5, 1e-8, -1e-8, 1.0]), "mode_temperature", 1.0)
+    np.testing.assert_array_equal(levels, -levels[::-1])
+    assert levels[-1] == 1.0
+    colours, norm = field_colours.colours_of("mode_temperature", levels)
+    tiny = [colours(norm(value)) for value in (-1e-8, 0.0, 1e-8)]
+    assert tiny[0] == tiny[1] == tiny[2]
+    assert np.ptp(tiny[0][:3]) < 0.02 < np.ptp(colours(norm(0.1))[:3])
 
 
 def test_colours_leave_out_a_spike_of_little_area():
@@ -1005,6 +1056,47 @@ def test_titles_of_fields_side_by_side_stand_apart(laid_out, result):
         for left, right in zip(boxes, boxes[1:]):
             assert right.x0 - left.x1 > 0.1 * figure.dpi
 
+
+
+def test_titles_side_by_side_begin_on_one_height(laid_out, result):
+    with h5py.File(result, "r+") as file:
+        points, count = file["VTKHDF/PointData"], len(file["VTKHDF/Points"])
+        points["solid_fraction"] = np.arange(len(points["temperature"])) % count / count
+        points["equivalent_plastic_strain"] = points["solid_fraction"][()]
+    (figure,) = laid_out("fields", result, "--quantity", "temperature", "solid_fraction")
+    first, second = (axes._left_title.get_window_extent() for axes in panels_of(figure))
+    assert second.y1 == pytest.approx(first.y1, abs=1.0)
+    assert figure._supxlabel.get_text().endswith(
+        "\nthick line inside: edge of the plastic zone; dashed line: solid fraction 0.5")
+
+
+def test_a_window_shows_its_part_of_the_model_in_colours_of_its_own(kept, fail, result):
+    (figure,) = kept("fields", result, "--quantity", "temperature", "--window", -1, 4, -2, 3)
+    panel, bar = figure.axes
+    assert (*panel.get_xlim(), *panel.get_ylim()) == (-1.0, 4.0, -2.0, 3.0)
+    (whole,) = kept("fields", result, "--quantity", "temperature")
+    assert np.ptp(bar.get_ylim()) < 0.5 * np.ptp(whole.axes[1].get_ylim())
+    assert "--window 21 22 0 1 shows nothing: the model is from 0 to 20.2 in x" in fail(
+        "fields", result, "--window", 21, 22, 0, 1)
+    assert "X0 must be below X1" in fail("fields", result, "--window", 2, 1, 0, 1)
+
+
+def test_outlines_are_seen_on_the_darkest_colour(kept, result):
+    (figure,) = kept("fields", result, "--quantity", "temperature", "--range", 1e6, 2e6)
+    lines = [each for each in figure.axes[0].collections if isinstance(each, LineCollection)]
+    looks = [(tuple(each.get_colors()[0][:3]), each.get_linewidth()[0]) for each in lines[-2:]]
+    (below, wide), (above, narrow) = looks
+    assert below == (1.0, 1.0, 1.0) and above == (0.0, 0.0, 0.0) and wide > narrow
+
+
+def test_sections_of_generalised_plane_strain_show_the_stress_along_z(tabulate, result, tmp_path):
+    with h5py.File(result, "r+") as file:
+        file["history/U3"] = np.zeros(len(file["history/time"]))
+    tabulate("fields", result)
+    drawn = table(tmp_path, "case.fields.csv")
+    assert "zz" in drawn and "yy" not in drawn
+
+
 def test_many_fields_are_drawn_in_rows_of_panels_large_enough(laid_out, result):
     quantities = ["xx", "yy", "zz", "xy", "von_mises"]
     (figure,) = laid_out("fields", result, "--region", "contact", "--quantity", *quantities)
@@ -1123,8 +1215,9 @@ def test_magnified_displacements_name_their_factor_and_why_bodies_overlap(result
     with h5py.File(result, "r+") as file:
         del file["deck"]
         file["deck"] = ["*Clearance, SLAVE=A, MASTER=B, VALUE=-0.01"]
-    assert words(20.0).endswith("touching faces are drawn 20 times their *CLEARANCE apart, or overlapping")
-    assert words(1.0).endswith("touching faces are drawn their *CLEARANCE apart, or overlapping")
+    for factor in (1.0, 20.0):
+        assert words(factor).endswith("\nthe mesh has the faces as drawn; *CLEARANCE, \N{MINUS SIGN}0.01 cm "
+                                      "here, is not drawn")
 
 
 def test_uniform_contact_is_tinted_and_names_hide_no_symbol(laid_out, result):
@@ -1365,6 +1458,14 @@ def test_times_have_the_unit_of_the_deck(kept, result):
         assert Units({}).short_load("time", 5.0) == "time 5"
     (figure,) = kept("courses", result)
     assert {axes.get_xlabel() for axes in figure.axes if axes.get_visible()} == {"", "Time (s)"}
+
+
+def test_forces_are_newtons_where_units_are_those_of_newtons():
+    units = {"length": "mm", "stress": "MPa"}
+    assert Units(units).label("Force", "force") == "Force (N)"
+    assert Units(units | {"length": "m"}).label("Force", "force") == "Force (MPa m$^2$)"
+    assert (unit_of("MPa mm^2"), unit_of("Pa m^2")) == ("N", "N")
+    assert unit_of("MPa cm^2") == "MPa cm\N{SUPERSCRIPT TWO}"
 
 
 def test_celsius_is_the_unit_of_a_load_axis():

@@ -69,10 +69,14 @@ def test_the_page_tells_what_decays_is_uncertain_or_not_known(tmp_path):
 
 
 def test_a_motion_is_drawn_on_its_shape(result, tmp_path, capsys):
-    options = ["--scale", "0.5", "--csv", "--out", str(tmp_path)]
-    assert plot(["fields", str(result), *MODE, *options]) == 0
-    with open(tmp_path / "deck.fields-mode_temperature-scale-0.5.csv", newline="") as file:
-        drawn = [{key: float(cell) for key, cell in row.items()} for row in csv.DictReader(file)]
+    factors, options = {}, ["--csv", "--out", str(tmp_path)]
+    for name, chosen in (("", []), ("-scale-500", ["--scale", "500"])):
+        assert plot(["fields", str(result), *MODE, *chosen, *options]) == 0
+        with open(tmp_path / f"deck.fields-mode_temperature{name}.csv", newline="") as file:
+            drawn = [{key: float(cell) for key, cell in row.items()} for row in csv.DictReader(file)]
+        factors[name] = drawn
+    assert plot(["fields", str(result), "--quantity", "mode_displacement", *options]) == 2
+    assert "is the shape that mode_temperature is drawn on" in capsys.readouterr().err
     with h5py.File(result) as file:
         grid = file["VTKHDF"]
         count = len(grid["Points"])
@@ -80,12 +84,12 @@ def test_a_motion_is_drawn_on_its_shape(result, tmp_path, capsys):
         moved = grid["PointData/mode_displacement"][-count:, 1]
         places = grid["Points"][:, 1]
     np.testing.assert_array_equal([row["mode_temperature"] for row in drawn], mode)
-    shift = np.array([row["y_drawn"] for row in drawn]) - places
     most = abs(moved).argmax()
-    np.testing.assert_allclose(shift, shift[most] / moved[most] * moved, atol=1e-9)
-    # One digit of the factor that makes a twentieth of the rods, 0.2 long; half of it is asked for.
-    assert shift[most] / moved[most] == pytest.approx(
-        0.5 * float(f"{0.05 * 0.2 / abs(moved[most]):.1g}"))
+    # One digit of the factor that makes a fiftieth of the rods, 0.2 long; or what is asked for.
+    expected = {"": float(f"{0.02 * 0.2 / abs(moved[most]):.1g}"), "-scale-500": 500.0}
+    for name, drawn in factors.items():
+        shift = np.array([row["y_drawn"] for row in drawn]) - places
+        np.testing.assert_allclose(shift, expected[name] * moved, atol=1e-9 * expected[name] * abs(moved[most]))
 
 
 def test_a_motion_is_drawn_alone_and_where_there_is_one(result, tmp_path, capsys):

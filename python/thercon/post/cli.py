@@ -8,7 +8,7 @@ from itertools import chain
 from . import accuracy, branch, convergence, courses, fields, history, mesh, profiles, style, trade, zones
 from .deck_changes import changed
 from .errors import UserError, nearest_name, program
-from .result import FIELD_SOURCES, Result
+from .result import FIELD_SOURCES, MODE, Result
 from .words import known_name
 
 SUMMARY = """Pictures of a thercon result: each call writes PNG and SVG.
@@ -135,8 +135,8 @@ def add_contact(picture):
     picture.add_argument(
         "--along",
         choices=("x", "y", "s"),
-        help="x, y or arc length s (default: x where it grows along the face, else s; of several "
-        "interfaces see below)",
+        help="x, y or arc length s (default: x where it grows along a face that is not steep, else s; of "
+        "several interfaces see below)",
     )
     picture.add_argument(
         "--with",
@@ -164,8 +164,8 @@ def add_fields(picture):
         type=field_name,
         metavar="QUANTITY ...",
         help=f"panel to draw, or several, of {', '.join(FIELD_SOURCES)}, or as *VERIFY names them "
-        f"(default: those present of {', '.join(fields.USUAL[False])}; in axisymmetry of "
-        f"{', '.join(fields.USUAL[True])})",
+        f"(default: those present of {', '.join(fields.USUAL[False])}; zz in place of yy for elements "
+        f"CPEG...; in axisymmetry {', '.join(fields.USUAL[True])})",
     )
     picture.add_argument(
         "--colours",
@@ -185,10 +185,10 @@ def add_fields(picture):
     picture.add_argument(
         "--scale",
         type=float,
-        default=1.0,
         metavar="FACTOR",
-        help="magnify displacements (default 1); initial gaps are not magnified, so that above 1 "
-        "bodies that touch seem to overlap",
+        help="magnify displacements (default 1; of a small motion, whose size is arbitrary, so much "
+        "that it is seen); initial gaps are not magnified, so that above 1 bodies that touch seem to "
+        "overlap",
     )
     picture.add_argument(
         "--region",
@@ -196,10 +196,19 @@ def add_fields(picture):
         default="model",
         help="what to show (default: model)",
     )
+    picture.add_argument(
+        "--window",
+        nargs=4,
+        type=float,
+        metavar=("X0", "X1", "Y0", "Y1"),
+        help="show this part of the model, such as a piece of a thin tube; colours cover its values",
+    )
 
 
 def field_name(word):
     """Return the field that a word of the command line means."""
+    if word.lower() == "mode_displacement":
+        raise argparse.ArgumentTypeError(f"{word} is the shape that {MODE} is drawn on: choose that one")
     name = known_name(word, FIELD_SOURCES)
     if name not in FIELD_SOURCES:
         raise argparse.ArgumentTypeError(f"invalid choice: '{word}'{nearest_name(word, FIELD_SOURCES)} "

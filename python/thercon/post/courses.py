@@ -18,7 +18,8 @@ HEAT = {"heat_in": "into the model", "heat_friction": "of friction", "heat_out":
         "heat_stored": "stored", "heat_dilatation": "taken up by strains"}
 FORCES = {"normal_force": "normal", "shear_force": "of friction"}   # of faces that slide
 FACES = {"slave_temperature": "slave", "master_temperature": "master"}
-BANDS = "Of a face: lines are means, bands reach from the smallest to the largest value"
+MEANS = "Lines are means over {}"
+BANDS = ", bands reach from the smallest to the largest value"
 DECADES = 1e-3  # of the largest heat rate, the smallest that a logarithmic axis shows
 ORDER = {"master": 1, "out of it": 1, "stored": 2, "through the contact": 3,
          "taken up by strains": 4, "of friction": 5}
@@ -95,8 +96,18 @@ class Picture:
         first = self.time[self.time > 0.0].min(initial=self.time[-1])
         if self.log and first < self.time[-1]:
             style.log_abscissa(grid[0, 0], first, self.time[-1])
-        figure.supxlabel(BANDS if self.result.judged.all() else f"{BANDS}\n{MARKED}", fontsize=8.5)
+        words = [self.words_below(), "" if self.result.judged.all() else MARKED]
+        figure.supxlabel("\n".join(filter(None, words)), fontsize=8.5)
         return figure
+
+    def words_below(self):
+        """Return what lines and bands are, as far as there are some."""
+        of_faces = [values for curves in self.panels.values() for _, values in curves
+                    if values.ndim == 2]
+        if not of_faces:
+            return ""
+        faces = "the faces of all these interfaces" if self.contact.parts else "the face"
+        return MEANS.format(faces) + (BANDS if any(map(style.has_band, of_faces)) else "")
 
     def draw_panel(self, axes, curves):
         """Draw curves: the mean over the face and a band of its range."""

@@ -16,6 +16,7 @@ UNSEEN = 1e-4  # of the range of temperatures: so far they may be beyond the col
 UNIFORM = 1e-3  # of the largest magnitude: a smaller range has one colour
 BEYOND = 0.005  # of the area, at either end of a scale: so much may have values beyond its colours
 FAR = 1.5  # times the range of the others: values that extend it by less have colours too
+NEUTRAL = np.array([0.05, 0.2, 0.4, 0.6, 0.8, 1.0])  # levels of a motion: about 0 its sign tells nothing
 WIDE = 1.8  # width over height of models whose panels are one below the other
 
 
@@ -59,6 +60,8 @@ def limits(values, quantity, scale, areas=None, given=None):
         middle = 0.5 * (low + high)
         middle = middle if abs(middle) > NOTHING * scale else 0.0
         return middle + np.array([-1.0, 1.0]) * (scale or 1.0)  # one band
+    if quantity == "mode_temperature":
+        return scale * np.concatenate((-NEUTRAL[::-1], NEUTRAL))
     if quantity != "temperature":
         order = np.argsort(values)
         below = np.cumsum(areas[order])
@@ -149,7 +152,10 @@ class LevelLocator(Locator):
         self.levels = levels
 
     def __call__(self):
-        """Return the levels that have labels, those at whole multiples of their distance."""
+        """Return the levels that have labels, those at whole multiples of their distance; all where
+        their distances differ."""
+        if not np.allclose(np.diff(self.levels), self.levels[1] - self.levels[0]):
+            return self.levels
         count, steps = len(self.levels), np.rint(self.levels / np.diff(self.levels[:2]))
         rounded = [float(f"{level:.6g}") for level in self.levels]
         digits = max(len(np.format_float_positional(level, trim="-")) for level in rounded)

@@ -51,7 +51,7 @@ TITLES = {
     "heat_flux_error": ("Estimated error of heat flux", "flux"),
     MODE: ("Temperature of the fastest motion", None),
 }
-AMPLITUDE = 0.05  # of the size of the model: displacement of a motion that is drawn
+AMPLITUDE = 0.02  # of the size of the model: displacement of a motion that is drawn
 COLUMNS = 3  # of panels
 LOOKED_AT = 20  # times at most
 MOST_NAMED = 8  # increments
@@ -72,7 +72,9 @@ def draw_row(result, row, options):
     fields = read_fields(result, step, options.quantity)
     check_range(options.range, fields)
     displacement = result.point_data("mode_displacement" if MODE in fields else "displacement", step)
-    factor = options.scale * (mode_factor(result.cells, displacement) if MODE in fields else 1.0)
+    factor = options.scale
+    if factor is None:
+        factor = mode_factor(result.cells, displacement) if MODE in fields else 1.0
     moved = result.cells.points.copy()
     if displacement is not None:
         moved += factor * displacement[:, :2]
@@ -82,12 +84,15 @@ def draw_row(result, row, options):
     grid = Triangulation(*at.T, fine.triangles)
     lines = lines_of(result, step if displacement is not None else None, factor)
     window = with_lines(mesh.bounds_of(moved[result.cells.used]), lines)
+    is_part = options.window is not None or options.region == "contact"
     if options.region == "contact":
-        window = mesh.contact_window(result.contacts(), result.cells, moved)
+        window = contact_window(result, moved, window)
+    if options.window:
+        window = given_window(options.window, window)
     figure, panels = layout(len(fields), window)
-    layers = []
+    layers, titles = [], titles_of(fields, result.units, panels[0])
     for axes, letter, (quantity, given) in zip(panels, ascii_lowercase, fields.items()):
-        mesh.frame(axes, window, result.units, cut=options.region == "contact")
+        mesh.frame(axes, window, result.units, cut=is_part)
         look = quantity, magnitude(result, quantity, step), options
         if quantity in CELL_FIELDS:
             layers.append(draw_elements(axes, result.cells, moved, given, look, window))
@@ -96,15 +101,16 @@ def draw_row(result, row, options):
                                       inside_of(result.cells, moved, at, window)))
         draw_lines(axes, result.cells, moved)
         draw_rigid(axes, lines)
-        outline_plastic_zone(axes, grid, fine, result.point_data("equivalent_plastic_strain", step))
-        draw_front(axes, grid, fine, result.point_data("solid_fraction", step))
-        title = result.units.label(*TITLES[quantity])
-        if figure.axes[0].get_subplotspec().get_gridspec().ncols > 1:  # room for symbol and unit
-            title = re.sub(r" (?=[$(]|of )", "\n", title, count=1)
+        lines_of_state = [
+            outline_plastic_zone(axes, grid, fine, result.point_data("equivalent_plastic_strain", step)),
+            draw_front(axes, grid, fine, result.point_data("solid_fraction", step)),
+        ]
+        title = titles[quantity] + (fate(result, row) if quantity == MODE else "")
         style.panel_title(axes, title, letter if len(fields) > 1 else "")
     draw_bars(panels.tolist(), layers)
     share_labels(panels)
-    figure.supxlabel(words_below(result, row, factor, MODE in fields), fontsize=8.5)
+    words = [words_below(result, row, factor, MODE in fields), "; ".join(filter(None, lines_of_state))]
+    figure.supxlabel("\n".join(filter(None, words)), fontsize=8.5)
     return style.write(
         figure,
         table(result, moved, displacement, fields),
@@ -113,19 +119,63 @@ def draw_row(result, row, options):
     )
 
 
+def titles_of(fields, units, axes):
+    """Return {quantity: title}: of panels side by side in two lines, if one of them needs two."""
+    titles = {quantity: units.label(*TITLES[quantity]) for quantity in fields}
+    if axes.get_subplotspec().get_gridspec().ncols > 1:
+        titles = {q: re.sub(r" (?=[$(]|of )", "\n", title, count=1) for q, title in titles.items()}
+    if any("\n" in title for title in titles.values()):
+        titles = {q: title if "\n" in title else f"{title}\n" for q, title in titles.items()}
+    return titles
+
+
 def outline_plastic_zone(axes, grid, fine, strain):
-    """Draw where the plastic strain is a hundredth of its largest value."""
-    if strain is not None and np.nanmax(strain) > 0.0:
-        values = np.nan_to_num(fine.values(strain.astype(float)))
-        axes.tricontour(grid, values, levels=[0.01 * np.nanmax(strain)], colors="black",
-                        linewidths=1.0)
+    """Draw where the plastic strain is a hundredth of its largest value; return what the line is."""
+    if strain is None or not np.nanmax(strain) > 0.0:
+        return ""
+    values = np.nan_to_num(fine.values(strain.astype(float)))
+    axes.tricontour(grid, values, levels=[0.01 * np.nanmax(strain)], colors="black", linewidths=1.0)
+    return "thick line inside: edge of the plastic zone"
 
 
 def draw_front(axes, grid, fine, fraction):
-    """Draw the front of solidification, where the solid fraction is a half."""
-    if fraction is not None and np.nanmin(fraction) < 0.5 < np.nanmax(fraction):
-        axes.tricontour(grid, fine.values(fraction.astype(float)), levels=[0.5], colors="black",
-                        linewidths=1.4, linestyles="dashed")
+    """Draw the front of solidification, where the solid fraction is a half; return what the line is."""
+    if fraction is None or not np.nanmin(fraction) < 0.5 < np.nanmax(fraction):
+        return ""
+    axes.tricontour(grid, fine.values(fraction.astype(float)), levels=[0.5], colors="black",
+                    linewidths=1.4, linestyles="dashed")
+    return "dashed line: solid fraction 0.5"
+
+
+def contact_window(result, moved, whole):
+    """Return the window of the contact; a note says how to see more where that is the whole model."""
+    near = mesh.contact_window(result.contacts(), result.cells, moved)
+    if np.all(np.ptp(near, axis=0) >= mesh.SMALLER * np.ptp(whole, axis=0)):
+        result.notes.append(f"{result.path}: the contact is all over the model: --window shows a part")
+    return near
+
+
+def given_window(ends, whole):
+    """Return the window that --window gives, which must show some of the model."""
+    window = np.array([ends[0::2], ends[1::2]])
+    words = " ".join(f"{end:g}" for end in ends)
+    if not np.all(window[0] < window[1]):
+        raise UserError(f"--window {words}: X0 must be below X1, and Y0 below Y1")
+    if np.any(window[1] <= whole[0]) or np.any(window[0] >= whole[1]):
+        (left, foot), (right, top) = whole
+        raise UserError(f"--window {words} shows nothing: the model is from {left:.4g} to {right:.4g} in x "
+                        f"and {foot:.4g} to {top:.4g} in y")
+    return window
+
+
+def fate(result, row):
+    """Return whether the motion at a row of /history grows, as the end of a title."""
+    found = result.stability
+    at = np.flatnonzero(found["time"] == result.history["time"][row]) if found else []
+    if not len(at):
+        return ""
+    rate = found["growth_rate"][at[-1]]
+    return ", which grows" if rate > 0.0 else ", which decays" if rate < 0.0 else ""
 
 
 def mode_factor(cells, displacement):
@@ -141,16 +191,17 @@ def words_below(result, row, factor, is_mode=False):
     words += "\nsmall motion, its largest temperature 1" if is_mode else ""
     words += f"; displacements $\\times$ {factor:g}" if factor != 1.0 else ""
     if result.given_gaps:
-        return f"{words}\n{apart_words(result, factor)}"
-    if factor > 1.0 and touches_after_a_gap(result):
+        return f"{words}\n{apart_words(result)}"
+    if is_mode and result.contact_names:
+        words += ",\nfaces that slip may seem to part or overlap"
+    elif factor > 1.0 and touches_after_a_gap(result):
         words += ",\ninitial gaps are not magnified:\nbodies that touch seem to overlap"
     return words
 
 
-def apart_words(result, factor):
-    """Return where faces that touch are drawn if a card gives gaps that the mesh does not have."""
-    times = f"{factor:g} times " if factor != 1.0 else ""
-    return f"touching faces are drawn {times}their {result.given_gaps} apart, or overlapping"
+def apart_words(result):
+    """Return that gaps that a card gives are not in the mesh."""
+    return f"the mesh has the faces as drawn; {result.given_gaps} is not drawn"
 
 
 def touches_after_a_gap(result):
@@ -190,7 +241,9 @@ def name_of(result, row, options):
         parts += result.row_words(row)
     if options.region == "contact":
         parts.append("contact")
-    if options.scale != 1.0:
+    if options.window:
+        parts += ["window", *options.window]
+    if options.scale not in (None, 1.0):
         parts += ["scale", options.scale]
     if options.range:
         parts += ["range", *options.range]
@@ -214,7 +267,10 @@ def read_fields(result, step, quantities):
         )
     if MODE in (quantities or ()) and len(quantities) > 1:
         raise UserError(f"{MODE} is drawn on the shape of its motion: draw it apart from other fields")
-    chosen = quantities or [q for q in USUAL[result.is_axisymmetric] if q in there]
+    usual = USUAL[result.is_axisymmetric]
+    if "U3" in result.history:  # generalised plane strain
+        usual = (*usual[:2], "zz")
+    chosen = quantities or [q for q in usual if q in there]
     if not quantities and len(chosen) > 1 and tells_nothing(result, there, step):
         chosen.remove("temperature")
     if not chosen:
@@ -381,9 +437,9 @@ def draw_lines(axes, cells, moved):
         axes.add_collection(
             LineCollection(curves(edges, moved), colors="black", linewidths=0.2, alpha=0.45)
         )
-    axes.add_collection(
-        LineCollection(curves(cells.boundary(), moved), colors="black", linewidths=0.7)
-    )
+    outline = curves(cells.boundary(), moved)
+    for colour, width in (("white", 1.1), ("black", 0.7)):  # to be seen on dark colours, too
+        axes.add_collection(LineCollection(outline, colors=colour, linewidths=width))
 
 
 def table(result, moved, displacement, fields):

@@ -19,7 +19,7 @@ def draw(result, options):
     for each in found:
         kinds.setdefault(each.name, set()).add(each.kind)
     wanted = chosen_quantities(result, found, options.quantity or ())
-    pictures = [(each, [key for key in wanted or each.values if key in each.values]) for each in found]
+    pictures = [(each, [key for key in wanted or each.told() if key in each.values]) for each in found]
     written = []
     for each, keys in pictures:
         if not keys:
@@ -83,7 +83,7 @@ def picture(result, history, keys):
 
 
 def panel(axes, at, history, key):
-    """Draw one quantity; return whether the members are too many for a curve each."""
+    """Draw one quantity; return whether the members are too many for a curve each, and differ."""
     curves = history.curves(key)
     marks = {"marker": "o", "ms": 2.4, "mfc": "white"} if len(at) <= 30 else {}
     if len(curves) > MOST_CURVES:
@@ -92,7 +92,7 @@ def panel(axes, at, history, key):
         axes.fill_between(at[known], np.nanmin(values[known], axis=1),
                           np.nanmax(values[known], axis=1), color=style.BLACK, alpha=0.15, linewidth=0)
         axes.plot(at[known], np.nanmean(values[known], axis=1), color=style.BLACK, **marks)
-        return True
+        return style.has_band(values[known])
     for number, (words, values) in enumerate(curves):
         known = np.isfinite(values)
         axes.plot(at[known], values[known], color=style.SERIES[number], label=words or None, **marks)

@@ -24,7 +24,7 @@ SECOND = ("shear", "master_temperature")  # curves of a panel whose marks are ho
 MU_P_WIDTH = 1.4  # its dots are seen where friction lies on them
 
 COLUMNS = 2  # of the legend
-PARTS_NAMED = 8  # of the interfaces that overlap
+MOST_NAMED, SOME_NAMED = 24, 8  # of the interfaces that overlap: all, or some of more
 LEGEND_LINE = 0.16  # height of a line of the legend, in inches
 
 
@@ -80,11 +80,16 @@ def load_handles(picture):
 
 
 def part_handles(picture):
-    """Return the legend's entries for the curves of interfaces that overlap: of many for some, their
-    colours being in the order of their places."""
+    """Return the legend's entries for the curves of interfaces that overlap: of very many for some,
+    their colours being in the order of their places, and one that says so."""
     names = list(picture.contact.parts)
-    shown = np.unique(np.linspace(0, len(names) - 1, PARTS_NAMED).round().astype(int))
-    return [Line2D([], [], color=picture.colours[k], label=style.plain(names[k])) for k in shown]
+    count = len(names) if len(names) <= MOST_NAMED else SOME_NAMED
+    shown = np.unique(np.linspace(0, len(names) - 1, count).round().astype(int))
+    handles = [Line2D([], [], color=picture.colours[k], label=style.plain(names[k])) for k in shown]
+    if count < len(names):
+        words = f"{len(names) - count} more between these, in their order"
+        handles.append(Line2D([], [], ls="none", label=words))
+    return handles
 
 
 def load_texts(picture):

@@ -53,6 +53,8 @@ EDGES = ("edge_contact", "edge_stick", "edges_contact", "edges_stick")
 PATTERN = "*"  # in names of contacts: any characters
 NOISE = 1e-9  # of what it is beside: smaller values are rounding
 LOADS_TO = 1e-12  # of the largest load: loads are sums of at most some thousand increments
+NEARLY_ALL = 0.05  # of a picture: a narrower rest of the face is shown, too
+INCLINED = 0.7  # of the length of a face: where x changes by less, places are lengths along it
 LEFT_OUT = 0.01  # of the force and of the heat: as much may be outside of a profile
 TOLD = 1e-4  # of force or heat: smaller shares are not told
 UNJUDGED = "inside a step: the mesh is not refined for this time"
@@ -128,8 +130,8 @@ class Contact:
         return unit_of(self.units.get("pressure" if key == "peak_pressure" else key, ""))
 
     def axis(self, along):
-        """Return (name, coordinate of the pairs): x where it grows along the face, of several
-        interfaces y where that does, else s; of interfaces that overlap that of each.
+        """Return (name, coordinate of the pairs): x where it grows along the face, which is not steep,
+        of several interfaces y where that does, else s; of interfaces that overlap that of each.
 
         `along` is "x", "y", "s" or None for the choice made here.
         """
@@ -137,9 +139,14 @@ class Contact:
             return self.own_axis(along)
         if along in ("x", "y") and not self.grows(along):
             raise UserError(f"{along} does not grow along contact '{self.name}': use --along s")
-        choices = ("x", "y") if self.parts else ("x",)
+        choices = ("x", "y") if self.parts else () if self.is_steep() else ("x",)
         name = along or next(filter(self.grows, choices), "s")
         return name, self.data[name]
+
+    def is_steep(self):
+        """Whether x changes little along the face, as on an inclined one or an arc."""
+        spans = [[np.ptp(self.data[name][piece]) for piece in self.pieces] for name in "xs"]
+        return sum(spans[0]) < INCLINED * sum(spans[1])
 
     def grows(self, name):
         """Whether a coordinate grows along each piece of the face, and never falls."""
@@ -208,7 +215,9 @@ class Contact:
         places = np.concatenate((coordinate[shown], self.contact_edges(coordinate, rows)))
         first, last = float(places.min()), float(places.max())
         room = 0.3 * max(last - first, 2.0 * np.min(np.diff(coordinate), initial=high - low))
-        return max(low, first - room), min(high, last + room)
+        first, last = first - room, last + room
+        rest = NEARLY_ALL * (last - first)
+        return low if first < low + rest else first, high if last > high - rest else last
 
     def heat_shares(self, rows):
         """Return the share of each pair in the heat that crosses, (increments, pairs); zero where
@@ -425,15 +434,35 @@ class Result:
 
     @cached_property
     def given_gaps(self):
-        """The first keyword of the deck that gives gaps that the mesh does not have; empty where
-        there is none."""
-        found = (re.match(r"\*(CLEARANCE|CONTACT +INTERFERENCE)\b", card.upper()) for card in self.deck)
-        return next((each[0] for each in found if each), "")
+        """The first keyword of the deck that gives gaps that the mesh does not have, with the value
+        where it is a number; empty where there is none."""
+        for card in self.deck:
+            found = re.match(r"\*(CLEARANCE|CONTACT +INTERFERENCE)\b", card.upper())
+            value = re.search(r"\bVALUE *= *([-+.\dE]+) *(?:,|$)", card.upper())
+            if found and value:
+                words = f"{found[0]}, {value[1]} {self.units.names.get('length', '')}".rstrip()
+                return f"{words} here,".replace("-", "\N{MINUS SIGN}")
+            if found:
+                return found[0]
+        return ""
 
     @cached_property
     def contact_names(self):
-        """Names of the contact pairs, in the file's order."""
-        return list(self.file["contact"]) if "contact" in self.file else []
+        """Names of the contact pairs in the order of the deck, those of a pattern by their numbers."""
+        cards = "\n".join(self.deck).upper()
+        pairs = re.findall(r"^\*CONTACT +PAIR\b((?:.*, *\n)*.*)\n *([^,\n]*)", cards, re.MULTILINE)
+        given = [found[1] if (found := re.search(r"\bNAME *= *([^,\n]+?) *(?:,|$)", card)) else slave
+                 for card, slave in pairs]
+
+        def place(name):
+            upper = name.upper()
+            own = [k for k, each in enumerate(given) if upper == each]
+            own += [k for k, each in enumerate(given) if upper.startswith(f"{each}-")]
+            by_numbers = [(int(part), "") if part.isdecimal() else (-1, part)
+                          for part in re.split(r"(\d+)", upper)]
+            return [*own, len(given)][0], by_numbers
+
+        return sorted(self.file["contact"], key=place) if "contact" in self.file else []
 
     def contact(self, name):
         """Return one contact pair by name, or those that a pattern means as one."""

@@ -1,6 +1,7 @@
 """Histories of sets: what *NODE PRINT and *EL PRINT keep in the result file, /history/nodes and
 /history/elements; and those of pre-tension sections and reference nodes, which are in /history."""
 
+import re
 from dataclasses import dataclass
 
 import h5py
@@ -8,7 +9,7 @@ import numpy as np
 
 from .checked_file import need, numbers
 from .errors import UserError, nearest_name
-from .result import text, words_of
+from .result import NOISE, text, words_of
 from .units import unit_of
 
 KINDS = {"nodes": "node", "elements": "element"}
@@ -35,6 +36,16 @@ class SetHistory:
         """What one of the members is."""
         return {"nodes": "node ", "elements": "point ", "run": ""}[self.kind]
 
+    def told(self):
+        """Return the quantities that differ from zero, by more than rounding beside others of their
+        unit; all where none does."""
+        sizes = {key: np.nanmax(np.abs(values), initial=0.0) for key, values in self.values.items()}
+        largest = {}
+        for key, size in sizes.items():
+            largest[self.units[key]] = max(size, largest.get(self.units[key], 0.0))
+        return [key for key, size in sizes.items()
+                if size > NOISE * largest[self.units[key]]] or list(sizes)
+
     def curves(self, quantity):
         """Return [(words, values)] of a quantity: one for each member, or that of a total."""
         values = self.values[quantity]
@@ -59,14 +70,20 @@ def set_histories(result):
 
 
 def run_set(result, name):
-    """Return the history of pre-tension sections or reference nodes, numbered in the order of the
-    deck."""
+    """Return the history of pre-tension sections or reference nodes, which have the names that sections
+    of the deck give, or numbers in its order."""
     word, keys = RUN_SETS[name]
     values = {key: result.history[key] for key in keys if key in result.history}
     columns = max(found.shape[1:] for found in values.values())
     units = {key: unit_of(text(result.file["history"][key].attrs.get("unit", ""))) for key in values}
+    members = [f"{word} {k + 1}" for k in range(*columns or (1,))]
+    nodes = [re.search(r"\bREF *NODE *= *([^,<>]+?) *(?:,|$)", card, re.IGNORECASE) for card in result.deck
+             if card.startswith("*")]
+    nodes = list(dict.fromkeys(found[1] for found in nodes if found))
+    if word == "reference node" and len(nodes) == len(members):
+        members = [f"{word} {node}" for node in nodes]
     return SetHistory("run", name, np.arange(1, result.increments + 1), result.history["time"],
-                      [f"{word} {k + 1}" for k in range(*columns or (1,))], values, units)
+                      members, values, units)
 
 
 def read_set(group, kind, word, name):
@@ -112,5 +129,5 @@ def chosen(result, wanted):
 
 def label(quantity):
     """Return a quantity in words."""
-    words = words_of(quantity)
+    words = words_of(quantity).replace("external force", "reaction or load")
     return words[:1].upper() + words[1:]

@@ -13,6 +13,7 @@ matplotlib.use("Agg")
 from matplotlib import pyplot as plt  # noqa: E402  the backend is chosen first
 from matplotlib.ticker import FixedLocator, FuncFormatter, NullFormatter  # noqa: E402
 
+SEEN = 0.01  # of the height of a panel: thinner bands are not seen
 SINGLE_COLUMN, DOUBLE_COLUMN = 3.39, 7.01  # inches: 86 and 178 mm
 
 # Colours that stay apart for the colour-blind (Okabe and Ito) and in grey.
@@ -155,7 +156,13 @@ def mark_judged(axes, abscissa, judged):
         axes.axvline(place, color=GREY, ls=":", lw=0.8, zorder=0.5)
 
 
+def has_band(values):
+    """Whether the range of values (rows, members) is seen beside their changes from row to row."""
+    spread = np.nanmax(np.nanmax(values, axis=1) - np.nanmin(values, axis=1))
+    return bool(spread > SEEN * (np.nanmax(values) - np.nanmin(values)))
+
+
 def panel_title(axes, words, letter=""):
     """Put "(a)" and so on, where there is a letter, and words above the axes."""
-    words = f"({letter}) {words}".rstrip() if letter else words
+    words = f"({letter}) {words}".rstrip(" ") if letter else words
     axes.set_title(words, loc="left", fontsize=8.5, pad=4)

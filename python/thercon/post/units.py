@@ -5,6 +5,9 @@ import re
 UNIT_NAMES = ("length", "stress", "power", "temperature", "time")
 
 
+NEWTON = {"MPa mm^2": "N", "Pa m^2": "N"}
+
+
 class Units:
     """The user's own units."""
 
@@ -18,7 +21,8 @@ class Units:
         if {"power", "length"} <= set(self.names):
             self.names["flux"] = f"{self.names['power']}/{self.names['length']}$^2$"
         if {"stress", "length"} <= set(self.names):
-            self.names["force"] = f"{self.names['stress']} {self.names['length']}$^2$"
+            force = f"{self.names['stress']} {self.names['length']}^2"
+            self.names["force"] = NEWTON.get(force, force.replace("^2", "$^2$"))
 
     def label(self, words, quantity=None):
         """Return an axis label: `words` with the unit of `quantity`, where there is one."""
@@ -56,6 +60,7 @@ def plain_unit(unit):
 def unit_of(words):
     """Return the unit that a dataset names as pictures and page show it; empty where the deck names
     none and it has a quantity in its place."""
+    words = NEWTON.get(words, words)
     is_named = words != "-" and not re.search("length|stress|power|temperature", words)
     raised = plain_unit(words).replace("^2", "\N{SUPERSCRIPT TWO}")
     return raised.replace("^3", "\N{SUPERSCRIPT THREE}") if is_named else ""

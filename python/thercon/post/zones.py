@@ -220,6 +220,8 @@ class Picture:
         load = between(self.abscissa)
         if self.log:
             load = 10.0 ** between(np.log10(self.abscissa))
+        if len(self.abscissa) > 1:
+            load = np.clip(load, self.abscissa.min(), self.abscissa.max())
         looks = {"norm": BoundaryNorm([-0.5, 0.5, 1.5, 2.5], 3), "zorder": 0}
         for piece in self.contact.pieces:
             status = self.status[:, piece]

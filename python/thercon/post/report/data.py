@@ -244,7 +244,7 @@ def fields_data(result):
         "edges": counted(place[edges]),
         "boundary": counted(place[cells.boundary()]),
         "overlaps": touches_after_a_gap(result),
-        "apart": apart_words(result, 1.0) if result.given_gaps else "",
+        "apart": apart_words(result) if result.given_gaps else "",
         "near": near,
         "rigid": [rigid_data(result, *each, keep) for each in surfaces(result)],
         "displacement": None if moved[0] is None else whole_numbers([u[used, :2] for u in moved]),

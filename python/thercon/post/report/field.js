@@ -311,7 +311,7 @@ function draw(given) {
    drawBars(scales, quantity, $('panel').clientHeight);
    tellRange(quantity, step, all.rows[step], given, scales.some(scale => scale.isPast.includes(true)));
    $('field-note').textContent = [
-      all.apart ? `${all.apart[0].toUpperCase()}${all.apart.slice(1)}${factor === 1 ? '' : `, times ${show(factor)}`}.` : '',
+      all.apart ? `${all.apart[0].toUpperCase()}${all.apart.slice(1)}.` : '',
       factor > 1 && all.overlaps && !all.apart ? `Displacements are drawn ${show(factor)} times too large, the initial gaps are not: bodies that touch seem to overlap by ${show(factor - 1)} times their initial gap.` : '',
       factor !== 1 && (all.apart || !all.overlaps) ? `Displacements are drawn ${show(factor)} times as large.` : '',
       scales.length > 1 ? 'Bodies whose ranges differ more than tenfold have their own colours.' : '',

@@ -10,8 +10,8 @@ def of_sets(result, listed):
     """Return a chart of each quantity of each set: the curves of its members, of many their smallest,
     mean and largest values. `listed` makes a list of values."""
     return [chart(history, key, listed, result.increments) for history in set_histories(result)
-            for key, values in history.values.items()
-            if len(history.time) and (history.kind != "run" or values.ndim > 1)]
+            for key in (history.told() if len(history.time) else ())
+            if history.kind != "run" or history.values[key].ndim > 1]
 
 
 def chart(history, key, listed, count):

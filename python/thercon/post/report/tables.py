@@ -95,6 +95,7 @@ def uncertainties(result):
             rows.append([words_of(key) + (", s" if key.startswith("edge_") else ""), number(value),
                          *(cells or ["no estimate", contact.unit(key), *NO_PARTS])])
         found.append(uncertainty_table(f"Interface {contact.name} {said}", known, rows))
+    found = [folded(found, f"{len(found)} interfaces {said}")] if len(found) > MOST_OPEN else found
     largest = f"{said}, stress away from singular corners"
     others = {f"{name.capitalize()} {largest}": known for name, known in result.maxima.items()}
     others[f"Heat of the model {said}"] = result.uncertainties("increment")
@@ -108,6 +109,12 @@ def uncertainties(result):
 
 
 NO_PARTS = "–", "–", "–"
+MOST_OPEN = 6  # tables of interfaces; more are folded, so that pictures are near
+
+
+def folded(parts, words):
+    """Return parts of the page behind words that open them."""
+    return html("<details><summary>{}</summary>{}</details>", words, joined(parts))
 
 
 def uncertainty_table(caption, known, rows):
