@@ -365,7 +365,7 @@ class Result:
                 rows[f"{key} {name}"] = (values[-1], *estimate, unit)
         rows |= self._ranges()
         known = self._file.uncertainties("increment")
-        for key in ("heat_in", "heat_out"):
+        for key in ("heat_in", "heat_out", "solid_time"):
             if key in self.history:
                 rows[key] = (self.history[key][-1], *estimate_of(known.get(key)), self.history.units[key])
         for name, known in self._file.maxima.items():

@@ -21,7 +21,7 @@ module model_words
    public :: open_words, pairing_words, points_words, section_words, step_words, from_to
    public :: has_many, first_alike, alike_words
 
-   integer, parameter :: most_told = 20   !! interfaces, bodies or sections that are told one by one
+   integer, parameter :: most_told = 10   !! interfaces, bodies or sections that are told one by one
 
 contains
 

@@ -6,12 +6,13 @@ module run_documents
    use contact_quantities, only: contact_table, contact_values, estimated, has_quantity
    use contact_system, only: contact_open
    use field_quantities, only: maxima
+   use increment_quantities, only: history_estimated
    use interface_quantities, only: is_end_of_face
    use json, only: json_type
    use kinds, only: dp
    use model, only: model_type
    use no_estimates, only: no_reason, reason_inside_step, words_of_reason
-   use quantity_types, only: of_interface, quantity_type
+   use quantity_types, only: find_quantity, of_interface, quantity_type
    use records, only: uncertainty_type
    use result_rows, only: result_row_type
    use summary, only: summary_type
@@ -107,7 +108,7 @@ contains
       call document%close('}')
    end subroutine put_interface
 
-   !> Ranges of the fields.
+   !> Ranges of the fields, heat, and when all is solid.
    subroutine put_fields(document, row, summary, model)
       type(json_type), intent(inout) :: document
       type(result_row_type), intent(inout) :: row
@@ -127,17 +128,25 @@ contains
       end if
       if (allocated(summary%displacement)) call put_plain('largest_displacement', &
          summary%displacement, 'length')
+      if (allocated(summary%solid_time)) call put_plain('solid_time', summary%solid_time, 'time')
       call document%close('}')
    contains
       subroutine put_plain(name, value, unit)
          character(*), intent(in) :: name, unit
          real(dp), intent(in) :: value
+         integer :: q
 
          call document%open('{', name)
          call document%put(value, 'value')
          call document%put(unit_in_words(unit, model%units), 'unit')
-         call document%close('}')
          call row%put(name, value)
+         q = find_quantity(history_estimated, name)
+         if (q > 0 .and. allocated(summary%history_errors)) then
+            call put_uncertainty(document, row, summary%history_errors, q)
+         else if (q > 0) then
+            call document%put(words_of_reason(reason_inside_step(model)), 'no_estimate')
+         end if
+         call document%close('}')
       end subroutine put_plain
    end subroutine put_fields
 

@@ -25,7 +25,7 @@ module checked_values
 
 contains
 
-   !> Whether the value of a check has an error that a finer mesh shows.
+   !> Whether the quantity of a check has an error that a finer mesh shows.
    pure logical function is_estimable(check)
       type(verify_type), intent(in) :: check
       type(quantity_type) :: quantity
@@ -34,7 +34,6 @@ contains
       is_estimable = .not. (quantity%is_integer .or. quantity%is_geometry .or. &
          any(quantity%unit == [character(4) :: '-', 'time', 'load']) .and. &
          all(quantity%kind /= [of_nodes, of_references]) .and. .not. quantity%is_estimated)
-      is_estimable = is_estimable .and. .not. allocated(check%level)
    end function is_estimable
 
    !> Whether the value of a check is recovered from those of elements.
