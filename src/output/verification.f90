@@ -2,11 +2,11 @@
 module verification
    use, intrinsic :: ieee_arithmetic, only: ieee_is_nan
    use contact_points, only: contact_points_type
-   use checked_values, only: is_estimable, values_asked_for, worst_node, worst_of
+   use checked_values, only: is_estimable, is_of_motions, values_asked_for, worst_node, worst_of
    use due_output, only: is_followed, is_judged
    use kinds, only: dp
    use model, only: model_type, verify_type
-   use no_estimates, only: mark_of, no_reason, reason_inside_step
+   use no_estimates, only: mark_of, no_finer_value, no_reason, reason_inside_step
    use records, only: increment_record_type
    use reached_levels, only: reached_level_type, exchange_levels
    use state_tables, only: reals, state_table_type, words
@@ -86,7 +86,9 @@ contains
             model%verifications(i), model%mesh, point_node, values)
          if (.not. is_estimable(model%verifications(i))) cycle
          self%outcomes(i)%no_estimate = reason_inside_step(model)
-         if (allocated(record%check_uncertainties)) then
+         if (is_of_motions(model%verifications(i))) then
+            self%outcomes(i)%no_estimate = no_finer_value
+         else if (allocated(record%check_uncertainties)) then
             associate (found => record%check_uncertainties)
                self%outcomes(i)%no_estimate = found%no_estimate(i)
                if (.not. ieee_is_nan(found%total(i))) self%outcomes(i)%uncertainty = found%total(i)
