@@ -359,7 +359,7 @@ class Result:
             contact, known = self._file.contact(name), self._file.uncertainties(name)
             for key, values in contact.totals().items():
                 unit = contact.units.get("pressure" if key == "peak_pressure" else key, "")
-                estimate = estimate_of(known.get(key))
+                estimate = estimate_of(known.get(key), self._file.reason_of(key))
                 if contact.is_end_of_face(key, values[-1]):
                     estimate = np.nan, "end of the face"
                 rows[f"{key} {name}"] = (values[-1], *estimate, unit)
@@ -434,11 +434,11 @@ def checks_of_listing(file):
             for each in listing.checks]
 
 
-def estimate_of(entry):
+def estimate_of(entry, why=""):
     """Return uncertainty at the last increment, and why there is none, of an entry of
-    `uncertainties`."""
+    `uncertainties`; `why` where there is no entry."""
     if entry is None:
-        return np.nan, ""
+        return np.nan, why
     _, _, rows, why = entry
     return (np.nan, why) if why else (rows[-1, 1], "")
 

@@ -127,10 +127,19 @@ contains
       character(:), allocatable :: words
 
       words = pairing_name(points%pairing)
-      if (asked /= pairing_by_faces) return
-      if (points%pairing == pairing_nodes) words = words//', because the faces match'
-      if (allocated(points%mismatch)) words = words//', because the faces do not match: '// &
-         points%mismatch
+      if (points%is_rigid .and. points%pairing == pairing_nodes) then
+         words = words//' of the slave alone: the master is a rigid drawing'
+      else if (asked /= pairing_by_faces) then
+         return
+      else if (points%is_rigid) then
+         words = words//', because the master is a rigid drawing without nodes to pair'
+      else if (points%follows_sliding) then
+         words = words//', because SLIDING=FINITE moves the faces along each other'
+      else if (allocated(points%mismatch)) then
+         words = words//', because the faces do not match: '//points%mismatch
+      else if (points%pairing == pairing_nodes) then
+         words = words//', because the faces match'
+      end if
    end function pairing_words
 
    !> Corners of the slave that no master is opposite to; empty for none.

@@ -194,7 +194,7 @@ contains
          if (any(melts(model%materials))) most_lines = most_lines + 1
          if (allocated(model%couplings)) most_lines = most_lines + 1 + &
             count(model%couplings%is_section())
-         if (any(model%steps%stability_frequency > 0)) most_lines = most_lines + 2 + &
+         if (any(model%steps%stability_frequency > 0)) most_lines = most_lines + 3 + &
             maxval(model%steps%stability_modes)/leading_in_line
          most_lines = most_lines + count([any(model%materials%law%strains(1) > 0), &
             any(model%materials%law%strains(2) > 0)])

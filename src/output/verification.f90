@@ -2,11 +2,11 @@
 module verification
    use, intrinsic :: ieee_arithmetic, only: ieee_is_nan, ieee_quiet_nan, ieee_value
    use contact_points, only: contact_points_type
-   use checked_values, only: is_estimable, values_asked_for, worst_node, worst_of
+   use checked_values, only: is_estimable, is_of_motions, values_asked_for, worst_node, worst_of
    use due_output, only: is_followed, is_judged
    use kinds, only: dp
    use model, only: model_type, verify_type
-   use no_estimates, only: mark_of, no_reason, of_points, reason_inside_step
+   use no_estimates, only: mark_of, no_finer_value, no_reason, of_points, reason_inside_step
    use records, only: increment_record_type
    use reached_levels, only: reached_level_type, exchange_levels
    use state_tables, only: reals, state_table_type, words
@@ -94,6 +94,10 @@ contains
          if (.not. self%outcomes(i)%passed) self%outcomes(i)%node = worst_node( &
             model%verifications(i), model%mesh, point_node, values)
          if (.not. is_estimable(model%verifications(i))) cycle
+         if (is_of_motions(model%verifications(i))) then
+            no_estimate = no_finer_value
+            uncertainty = ieee_value(1.0_dp, ieee_quiet_nan)
+         end if
          self%outcomes(i)%no_estimate = no_estimate
          if (.not. ieee_is_nan(uncertainty)) self%outcomes(i)%uncertainty = uncertainty
       end do

@@ -49,7 +49,7 @@ TITLES = {
     "flux_y": ("Heat flux $q_y$", "flux"),
     "stress_error": ("Estimated error of stress", "stress"),
     "heat_flux_error": ("Estimated error of heat flux", "flux"),
-    MODE: ("Temperature of the fastest motion", None),
+    MODE: ("Temperature of the leading mode", None),
 }
 AMPLITUDE = 0.05  # of the size of the model: displacement of a motion that is drawn
 COLUMNS = 3  # of panels
@@ -138,13 +138,22 @@ def mode_factor(cells, displacement):
 def words_below(result, row, factor, is_mode=False):
     """Return load, time and what a magnification does."""
     words = result.load_words(row)
-    words += "\nsmall motion, its largest temperature 1" if is_mode else ""
+    words += f"{rate_words(result, row)}\nlargest temperature set to 1" if is_mode else ""
     words += f"; displacements $\\times$ {factor:g}" if factor != 1.0 else ""
     if result.given_gaps:
         return f"{words}\n{apart_words(result, factor)}"
     if factor > 1.0 and touches_after_a_gap(result):
         words += ",\ninitial gaps are not magnified:\nbodies that touch seem to overlap"
     return words
+
+
+def rate_words(result, row):
+    """Return a line with the growth rate of the mode that is drawn, where the file has it."""
+    found, unit = result.stability, result.units.names.get("time")
+    if found is None:
+        return ""
+    rate = found["growth_rate"][np.argmin(np.abs(found["time"] - result.history["time"][row]))]
+    return f"\ngrowth rate {rate:.4g}".replace("-", "\N{MINUS SIGN}") + (f" 1/{unit}" if unit else "")
 
 
 def apart_words(result, factor):
