@@ -424,13 +424,14 @@ def checks_of_listing(file):
         raise UserError(f"{file.path}: its checks are in its listing, and {path} is missing or of "
                         "another deck")
     last = file.history["time"][-1]
-    return [{"quantity": each.quantity, "where": each.where, "expected": float(each.expected),
-             "tolerance": float(each.allowed),
-             "kind": "relative" if each.measure == "REL" else "absolute",
+    return [{"quantity": each.quantity, "where": each.where,
+             **({"expected": float(each.expected), "tolerance": float(each.allowed),
+                 "kind": "relative" if each.measure == "REL" else "absolute"}
+                if each.expected != "-" else {}),
              "passed": each.verdict == "PASS",
-             **({"reason": each.failed} if each.failed else
-                {"time": last if each.time == "LAST" else float(each.time),
-                 "found": float(each.found), "deviation": float(each.deviation)})}
+             **({"reason": each.failed} if each.found == "-" else
+                {"time": last if each.time == "LAST" else float(each.time), "found": float(each.found)}),
+             **({"deviation": float(each.deviation)} if each.deviation != "-" else {})}
             for each in listing.checks]
 
 

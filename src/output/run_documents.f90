@@ -232,16 +232,18 @@ contains
             call document%put(check%title(), 'quantity')
             call document%put(check%where, 'where')
             call document%put(check%address, 'address')
-            call document%put(check%value, 'expected')
-            call document%put(check%tolerance, 'tolerance')
-            call document%put(trim(merge('relative', 'absolute', check%relative)), 'kind')
+            if (check%expects) then
+               call document%put(check%value, 'expected')
+               call document%put(check%tolerance, 'tolerance')
+               call document%put(trim(merge('relative', 'absolute', check%relative)), 'kind')
+            end if
             call document%put(outcome%passed, 'passed')
             if (outcome%reason /= '') then
                call document%put(outcome%reason, 'reason')
             else
                call document%put(outcome%time, 'time')
                call document%put(outcome%found, 'found')
-               call document%put(outcome%deviation, 'deviation')
+               if (check%expects) call document%put(outcome%deviation, 'deviation')
                if (outcome%node > 0) call document%put(outcome%node, 'node')
             end if
             if (outcome%no_estimate /= no_reason) call document%put(words_of_reason( &

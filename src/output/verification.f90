@@ -206,6 +206,7 @@ contains
       type(outcome_type) :: outcome
 
       outcome%judged = .true.
+      outcome%passed = .not. check%expects
       outcome%reason = reason
       if (reason /= '') return
       outcome%found = worst_of(check, values)
@@ -213,6 +214,7 @@ contains
          outcome%reason = 'there is no value (NaN)'
          return
       end if
+      if (.not. check%expects) return
       outcome%deviation = abs(outcome%found - check%value)
       outcome%passed = outcome%deviation <= check%tolerance
       if (.not. check%relative) return

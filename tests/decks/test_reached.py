@@ -123,3 +123,16 @@ def test_the_time_at_which_a_block_has_cooled_is_within_its_uncertainty(tmp_path
     assert 1e-6 < error < found["uncertainty"] < 20.0 * error
     (found,), _ = judged(tmp_path, cooled("LAST"), check)
     assert found["no_estimate"] == "path; ERRORS=FULL"
+
+
+def test_a_value_is_asked_for_without_an_expectation(tmp_path):
+    """It has its uncertainty, and fails no run where it does not exist."""
+    deck = write(tmp_path / "deck.inp", ["*OPTIONS, ERRORS=FULL", *WARM, "*VERIFY, KIND=NONE",
+                                         "NT reaches 70., 1, LAST", "NT, BLOCK.TOP, 0.2",
+                                         "NT reaches 500., 1, LAST"])
+    process = run("run", deck, "--json", "--out", tmp_path)
+    assert process.returncode == 0 and "check failed" not in process.stderr
+    _, value, never = json.loads(process.stdout)["checks"]
+    assert never["reason"] == "never reached" and "found" not in never
+    assert value["found"] == pytest.approx(70.0) and value["uncertainty"] < 1e-9
+    assert not {"expected", "tolerance", "deviation"} & value.keys()
