@@ -359,13 +359,13 @@ class Result:
             contact, known = self._file.contact(name), self._file.uncertainties(name)
             for key, values in contact.totals().items():
                 unit = contact.units.get("pressure" if key == "peak_pressure" else key, "")
-                estimate = estimate_of(known.get(key))
+                estimate = estimate_of(known.get(key), self._file.reason_of(key))
                 if contact.is_end_of_face(key, values[-1]):
                     estimate = np.nan, "end of the face"
                 rows[f"{key} {name}"] = (values[-1], *estimate, unit)
         rows |= self._ranges()
         known = self._file.uncertainties("increment")
-        for key in ("heat_in", "heat_out"):
+        for key in ("heat_in", "heat_out", "solid_time"):
             if key in self.history:
                 rows[key] = (self.history[key][-1], *estimate_of(known.get(key)), self.history.units[key])
         for name, known in self._file.maxima.items():
@@ -424,21 +424,22 @@ def checks_of_listing(file):
         raise UserError(f"{file.path}: its checks are in its listing, and {path} is missing or of "
                         "another deck")
     last = file.history["time"][-1]
-    return [{"quantity": each.quantity, "where": each.where, "expected": float(each.expected),
-             "tolerance": float(each.allowed),
-             "kind": "relative" if each.measure == "REL" else "absolute",
+    return [{"quantity": each.quantity, "where": each.where,
+             **({"expected": float(each.expected), "tolerance": float(each.allowed),
+                 "kind": "relative" if each.measure == "REL" else "absolute"}
+                if each.expected != "-" else {}),
              "passed": each.verdict == "PASS",
-             **({"reason": each.failed} if each.failed else
-                {"time": last if each.time == "LAST" else float(each.time),
-                 "found": float(each.found), "deviation": float(each.deviation)})}
+             **({"reason": each.failed} if each.found == "-" else
+                {"time": last if each.time == "LAST" else float(each.time), "found": float(each.found)}),
+             **({"deviation": float(each.deviation)} if each.deviation != "-" else {})}
             for each in listing.checks]
 
 
-def estimate_of(entry):
+def estimate_of(entry, why=""):
     """Return uncertainty at the last increment, and why there is none, of an entry of
-    `uncertainties`."""
+    `uncertainties`; `why` where there is no entry."""
     if entry is None:
-        return np.nan, ""
+        return np.nan, why
     _, _, rows, why = entry
     return (np.nan, why) if why else (rows[-1, 1], "")
 

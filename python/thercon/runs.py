@@ -68,8 +68,8 @@ def run(deck, *, out=".", accuracy=None, errors=None, limit=None, restart=None, 
         as on the command line: accuracy="1%", errors="full".
     resume: take a result of the same deck and values that is finished, and go on with one that keeps
         a state.
-    All other names are those of `*PARAMETER` in the deck: a number, or a text. A parameter that has
-    the name of an option above is given as `parameters={"out": 0.3}`.
+    All other names are those of `*PARAMETER` in the deck, in any case: a number, or a text. A
+    parameter that has the name of an option above is given as `parameters={"out": 0.3}`.
 
     Returns a `thercon.results.Result`. With failed *VERIFY checks, and where a requested accuracy is
     not reached, it is returned, too: see `Result.status` and `Result.checks`. Raises RunError where

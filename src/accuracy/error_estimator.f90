@@ -8,7 +8,7 @@ module error_estimator
    use contact_points, only: contact_points_type
    use contact_quantities, only: estimated
    use divided_mesh, only: divided_mesh_type
-   use due_output, only: is_judged
+   use due_output, only: is_followed, is_judged
    use element_kinds, only: element_corner_count
    use errors, only: error_type
    use field_quantities, only: maxima
@@ -332,7 +332,8 @@ contains
       end if
       do i = 1, size(model%verifications)
          associate (check => model%verifications(i))
-            if (.not. (is_estimable(check) .and. is_judged(check, record, model))) cycle
+            if (.not. (is_estimable(check) .and. (is_judged(check, record, model) .or. &
+               is_followed(check, record, model)))) cycle
             if (.not. is_copied(check)) call compare(check)
          end associate
       end do

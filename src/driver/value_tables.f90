@@ -108,7 +108,8 @@ contains
          if (name == '') then
             call report%error(fields(i)%place, 'column '//to_text(i)//' has no name')
          else if (given%find(name) > size(command%settings)) then
-            call report%error(fields(i)%place, 'column '//name//' is there twice; leave one out')
+            call report%error(fields(i)%place, 'column '//name//' is there twice; leave '// &
+               'one out (names are case-insensitive)')
          else if (given%find(name) > 0) then
             call report%error(fields(i)%place, '--set gives '//name//', too; leave one out')
          else if (known%find(name) == 0) then

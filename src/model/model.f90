@@ -45,7 +45,7 @@ module model
 
    !> One *VERIFY data card.
    type :: verify_type
-      character(:), allocatable :: kind       !! ANALYTIC, EXTERNAL, LEGACY, FIGURE or REGRESSION
+      character(:), allocatable :: kind       !! ANALYTIC, EXTERNAL, LEGACY, FIGURE, REGRESSION, NONE
       character(:), allocatable :: source     !! where the value comes from
       character(:), allocatable :: quantity   !! dataset or nodal quantity
       !> The value that the quantity reaches at the time that is expected; unallocated where its own
@@ -54,6 +54,7 @@ module model
       character(:), allocatable :: where      !! as written; empty for /history
       logical :: at_last = .false.            !! LAST
       real(dp) :: when = 0.0_dp               !! total time, unless at_last [time]
+      logical :: expects = .true.             !! whether a value is expected, or only asked for
       real(dp) :: value = 0.0_dp              !! expected value
       real(dp) :: tolerance = 0.0_dp          !! allowed deviation
       logical :: relative = .true.            !! REL, else ABS

@@ -100,21 +100,29 @@ contains
       character(10) :: kind
       character(max(24, len(check%title()))) :: quantity
       character(16) :: where
-      character(:), allocatable :: time, found
+      character(:), allocatable :: allowed, deviation, expected, found, time
 
       kind = or_blank(check%kind)
       quantity = check%title()
       where = or_blank(check%where)
       time = 'LAST'
       if (.not. check%at_last) time = to_text(check%when)
-      found = to_right('-', 15)//to_right('-', 10)
-      if (outcome%reason == '') found = column(outcome%found, 15, 7)// &
-         column(outcome%deviation, 10, 2)
+      found = to_right('-', 15)
+      if (outcome%reason == '') found = column(outcome%found, 15, 7)
+      expected = to_right('-', 15)
+      deviation = to_right('-', 10)
+      allowed = deviation
+      if (check%expects) then
+         expected = column(check%value, 15, 7)
+         if (outcome%reason == '') deviation = column(outcome%deviation, 10, 2)
+         allowed = column(check%tolerance, 10, 2)
+      end if
       call page%line(to_right(to_text(check%line), 6)//'  '//kind//' '//quantity//' '//where// &
-         to_right(time, 11)//column(check%value, 15, 7)//found//column(check%tolerance, 10, 2)// &
+         to_right(time, 11)//expected//found//deviation//allowed// &
          merge(' REL', ' ABS', check%relative)//merge(' PASS', ' FAIL', outcome%passed))
       if (or_blank(check%source) /= '') call page%line('        source: '//check%source)
-      if (outcome%reason /= '') call page%line('        failed: '//outcome%reason)
+      if (outcome%reason /= '') call page%line('        '//trim(merge('failed:  ', 'no value:', &
+         check%expects))//' '//outcome%reason)
       if (uncertainty_words(outcome)//node_words(outcome) /= '') call page%line( &
          '        found:  '//to_text(outcome%found)//uncertainty_words(outcome)// &
          node_words(outcome))

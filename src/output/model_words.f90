@@ -21,7 +21,7 @@ module model_words
    public :: open_words, pairing_words, points_words, section_words, step_words, from_to
    public :: has_many, first_alike, alike_words
 
-   integer, parameter :: most_told = 20   !! interfaces, bodies or sections that are told one by one
+   integer, parameter :: most_told = 10   !! interfaces, bodies or sections that are told one by one
 
 contains
 
@@ -127,10 +127,19 @@ contains
       character(:), allocatable :: words
 
       words = pairing_name(points%pairing)
-      if (asked /= pairing_by_faces) return
-      if (points%pairing == pairing_nodes) words = words//', because the faces match'
-      if (allocated(points%mismatch)) words = words//', because the faces do not match: '// &
-         points%mismatch
+      if (points%is_rigid .and. points%pairing == pairing_nodes) then
+         words = words//' of the slave alone: the master is a rigid drawing'
+      else if (asked /= pairing_by_faces) then
+         return
+      else if (points%is_rigid) then
+         words = words//', because the master is a rigid drawing without nodes to pair'
+      else if (points%follows_sliding) then
+         words = words//', because SLIDING=FINITE moves the faces along each other'
+      else if (allocated(points%mismatch)) then
+         words = words//', because the faces do not match: '//points%mismatch
+      else if (points%pairing == pairing_nodes) then
+         words = words//', because the faces match'
+      end if
    end function pairing_words
 
    !> Corners of the slave that no master is opposite to; empty for none.

@@ -18,8 +18,8 @@ module reached_levels
    !> The values of one card so far.
    type :: reached_level_type
       real(dp), allocatable :: level             !! unallocated for other cards
-      !> (3, values) the time at which each reached it first, and its last value with its time; NaN
-      !> where there is none, unallocated before the first
+      !> (6, values) the time at which each reached it first and its uncertainty; its last value with
+      !> its time, slope and increment; NaN where there is none, unallocated before the first
       real(dp), allocatable, private :: course(:, :)
    contains
       procedure :: follow
@@ -29,13 +29,14 @@ module reached_levels
 contains
 
    !> Takes the values of an increment; NaN is passed over.
-   subroutine follow(self, check, record, model, interfaces, point_node)
+   subroutine follow(self, check, record, model, interfaces, point_node, uncertainty)
       class(reached_level_type), intent(inout) :: self
       type(verify_type), intent(in) :: check
       type(increment_record_type), intent(in) :: record
       type(model_type), intent(in) :: model
       type(contact_points_type), intent(in) :: interfaces(:) !! contact points of every interface
       integer, intent(in) :: point_node(:)                   !! (points) node index of each point
+      real(dp), intent(in) :: uncertainty                    !! of a single value, or NaN
       type(increment_record_type) :: start
       real(dp), allocatable :: values(:)
       character(:), allocatable :: reason
@@ -44,30 +45,42 @@ contains
          start%fields%temperature = model%initial_temperature
          allocate (start%fields%displacement(2, size(model%initial_temperature)), source=0.0_dp)
          call values_asked_for(check, start, model, interfaces, point_node, values, reason)
-         if (reason == '') call take(self, values, 0.0_dp)
+         if (reason == '') call take(self, values, 0.0_dp, 0.0_dp)
       end if
       call values_asked_for(check, record, model, interfaces, point_node, values, reason)
-      if (reason == '') call take(self, values, record%time)
+      if (reason == '') call take(self, values, record%time, uncertainty)
    end subroutine follow
 
-   pure subroutine take(self, values, time)
+   pure subroutine take(self, values, time, uncertainty)
       type(reached_level_type), intent(inout) :: self
-      real(dp), intent(in) :: values(:), time
+      real(dp), intent(in) :: values(:), time, uncertainty
+      real(dp) :: bend, slope
       integer :: i
 
-      if (.not. allocated(self%course)) allocate (self%course(3, size(values)), &
+      if (.not. allocated(self%course)) allocate (self%course(6, size(values)), &
          source=ieee_value(1.0_dp, ieee_quiet_nan))
       do i = 1, size(self%course, 2)
          if (ieee_is_nan(values(i))) cycle
-         associate (reached => self%course(1, i), before => self%course(2, i), &
-            then => self%course(3, i))
-            if (ieee_is_nan(reached)) then
-               if (abs(values(i) - self%level) <= 0.0_dp) then
+         associate (reached => self%course(1, i), doubt => self%course(2, i), &
+            before => self%course(3, i), then => self%course(4, i), &
+            earlier_slope => self%course(5, i), increment => self%course(6, i))
+            if (ieee_is_nan(before)) then
+               if (abs(values(i) - self%level) <= 0.0_dp) reached = time
+               earlier_slope = 0.0_dp
+               increment = 0.0_dp
+            else
+               slope = (values(i) - before)/(time - then)
+               if (ieee_is_nan(reached) .and. passes(before, values(i), self%level)) then
                   reached = time
-               else if (.not. ieee_is_nan(before)) then
-                  if ((before < self%level) .neqv. (values(i) < self%level)) reached = then + &
-                     (self%level - before)/(values(i) - before)*(time - then)
+                  if (abs(values(i) - self%level) > 0.0_dp) reached = then + (self%level - before)/ &
+                     (values(i) - before)*(time - then)
+                  ! Between its increments the course is a parabola rather than a line.
+                  bend = abs(slope - earlier_slope)/(time - then + increment)*(reached - then)* &
+                     (time - reached)
+                  doubt = (uncertainty + bend)/abs(slope)
                end if
+               earlier_slope = slope
+               increment = time - then
             end if
             before = values(i)
             then = time
@@ -75,14 +88,24 @@ contains
       end do
    end subroutine take
 
+   !> Whether a value comes to a level or passes it.
+   pure logical function passes(before, now, level)
+      real(dp), intent(in) :: before, now, level
+
+      passes = (before < level .neqv. now < level) .or. abs(now - level) <= 0.0_dp
+   end function passes
+
    !> When the values reached it.
-   pure subroutine times(self, values, reason)
+   pure subroutine times(self, values, uncertainty, reason)
       class(reached_level_type), intent(in) :: self
       real(dp), allocatable, intent(out) :: values(:)        !! (values) [time]
+      real(dp), intent(out) :: uncertainty                   !! of a single one, or NaN [time]
       character(:), allocatable, intent(out) :: reason       !! why there are none; else empty
 
       allocate (values(0))
       if (allocated(self%course)) values = self%course(1, :)
+      uncertainty = ieee_value(1.0_dp, ieee_quiet_nan)
+      if (size(values) == 1) uncertainty = self%course(2, 1)
       reason = ''
       if (size(values) == 0 .or. any(ieee_is_nan(values))) reason = 'never reached'
    end subroutine times
@@ -111,10 +134,10 @@ contains
             if (allocated(levels(i)%level)) then
                ! The table may be that of another deck's checks.
                if (abs(levels(i)%level - values(first + 1)) <= 0.0_dp) levels(i)%course = &
-                  reshape(values(first + 3:first + 2 + 3*n), [3, n])
+                  reshape(values(first + 3:first + 2 + 6*n), [6, n])
             end if
          end if
-         first = first + 3 + 3*n
+         first = first + 3 + 6*n
       end do
    end subroutine exchange_levels
 

@@ -15,6 +15,7 @@ module result_fields
    use hdf5_writer, only: as_byte, as_integer, as_long, as_real, hdf5_writer_type
    use increment_quantities, only: part_values
    use kinds, only: dp
+   use materials, only: in_plane
    use model, only: model_type
    use quantity_types, only: of_contact_points, of_elements, of_points, quantity_type
    use records, only: increment_record_type
@@ -86,6 +87,8 @@ module result_fields
       integer, allocatable :: face_row(:)                        !! their row of its at_face_nodes
       !> (2, points) unit vectors away from the origin in plane models; else unallocated
       real(dp), allocatable :: radial(:, :)
+      !> (points) whether it has a temperature: reference nodes of sections have none
+      logical, allocatable :: is_in_plane(:)
    contains
       procedure :: start
       procedure :: append
@@ -110,8 +113,11 @@ contains
       logical, intent(in) :: has(0:)                     !! what the deck solves, by needs_*
       integer, intent(in) :: expected                    !! increments that are expected
       type(quantity_type), allocatable :: fields(:)
+      logical, allocatable :: is_in_plane(:)
 
       self%point_node = point_node
+      is_in_plane = in_plane(model%sections, size(model%mesh%node_number))
+      self%is_in_plane = is_in_plane(point_node)
       if (all(model%mesh%element_plane /= axisymmetric)) self%radial = &
          directions(model%mesh%coordinates(:, point_node))
       call find_faces(self, interfaces)
@@ -173,6 +179,7 @@ contains
       class(field_results_type), intent(inout) :: self
       type(increment_record_type), intent(in) :: record
       type(contact_points_type), intent(in) :: interfaces(:) !! contact points of every interface
+      real(dp), allocatable :: values(:)
       integer :: i
 
       do i = 1, size(self%point_data)
@@ -181,8 +188,10 @@ contains
                call self%sets(i)%append(face_values(self, quantity%name(len(mark) + 1:), record, &
                   interfaces))
             else
-               call self%sets(i)%append(point_values(quantity%name, record%fields, &
-                  self%point_node, self%radial))
+               values = point_values(quantity%name, record%fields, self%point_node, self%radial)
+               if (quantity%unit == 'temperature' .and. size(values) > 0) values = merge(values, &
+                  ieee_value(1.0_dp, ieee_quiet_nan), self%is_in_plane)
+               call self%sets(i)%append(values)
             end if
          end associate
       end do

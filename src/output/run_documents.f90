@@ -6,12 +6,14 @@ module run_documents
    use contact_quantities, only: contact_table, contact_values, estimated, has_quantity
    use contact_system, only: contact_open
    use field_quantities, only: maxima
+   use increment_quantities, only: history_estimated
    use interface_quantities, only: is_end_of_face
    use json, only: json_type
    use kinds, only: dp
    use model, only: model_type
-   use no_estimates, only: no_reason, reason_inside_step, words_of_reason
-   use quantity_types, only: of_interface, quantity_type
+   use no_estimates, only: no_finer_value, no_reason, of_checks, reason_inside_step, &
+      words_of_reason
+   use quantity_types, only: find_quantity, of_interface, quantity_type
    use records, only: uncertainty_type
    use result_rows, only: result_row_type
    use summary, only: summary_type
@@ -64,6 +66,7 @@ contains
          call document%open('{')
          call document%put(leading(1, i), 'growth_rate')
          call document%put(leading(2, i), 'period')
+         call document%put(words_of_reason(no_finer_value), 'no_estimate')
          call document%close('}')
       end do
       call document%close(']')
@@ -100,6 +103,8 @@ contains
                call put_uncertainty(document, row, summary%errors(i), q)
             else if (q > 0) then
                call document%put(words_of_reason(reason_inside_step(model)), 'no_estimate')
+            else
+               call document%put(words_of_reason(of_checks), 'no_estimate')
             end if
             call document%close('}')
          end do
@@ -107,7 +112,7 @@ contains
       call document%close('}')
    end subroutine put_interface
 
-   !> Ranges of the fields.
+   !> Ranges of the fields, heat, and when all is solid.
    subroutine put_fields(document, row, summary, model)
       type(json_type), intent(inout) :: document
       type(result_row_type), intent(inout) :: row
@@ -127,17 +132,25 @@ contains
       end if
       if (allocated(summary%displacement)) call put_plain('largest_displacement', &
          summary%displacement, 'length')
+      if (allocated(summary%solid_time)) call put_plain('solid_time', summary%solid_time, 'time')
       call document%close('}')
    contains
       subroutine put_plain(name, value, unit)
          character(*), intent(in) :: name, unit
          real(dp), intent(in) :: value
+         integer :: q
 
          call document%open('{', name)
          call document%put(value, 'value')
          call document%put(unit_in_words(unit, model%units), 'unit')
-         call document%close('}')
          call row%put(name, value)
+         q = find_quantity(history_estimated, name)
+         if (q > 0 .and. allocated(summary%history_errors)) then
+            call put_uncertainty(document, row, summary%history_errors, q)
+         else if (q > 0) then
+            call document%put(words_of_reason(reason_inside_step(model)), 'no_estimate')
+         end if
+         call document%close('}')
       end subroutine put_plain
    end subroutine put_fields
 
@@ -219,16 +232,18 @@ contains
             call document%put(check%title(), 'quantity')
             call document%put(check%where, 'where')
             call document%put(check%address, 'address')
-            call document%put(check%value, 'expected')
-            call document%put(check%tolerance, 'tolerance')
-            call document%put(trim(merge('relative', 'absolute', check%relative)), 'kind')
+            if (check%expects) then
+               call document%put(check%value, 'expected')
+               call document%put(check%tolerance, 'tolerance')
+               call document%put(trim(merge('relative', 'absolute', check%relative)), 'kind')
+            end if
             call document%put(outcome%passed, 'passed')
             if (outcome%reason /= '') then
                call document%put(outcome%reason, 'reason')
             else
                call document%put(outcome%time, 'time')
                call document%put(outcome%found, 'found')
-               call document%put(outcome%deviation, 'deviation')
+               if (check%expects) call document%put(outcome%deviation, 'deviation')
                if (outcome%node > 0) call document%put(outcome%node, 'node')
             end if
             if (outcome%no_estimate /= no_reason) call document%put(words_of_reason( &

@@ -49,6 +49,7 @@ module run_summaries
       type(run_size_type) :: sizes
       logical :: has_biot = .false.              !! whether contact_biot was computed
       real(dp) :: contact_biot(2) = 0.0_dp       !! omega L/K at the start, smallest and largest [-]
+      real(dp) :: seconds_before(size(stages)) = 0.0_dp   !! of the runs that it goes on from [s]
       real(dp) :: seconds_read = 0.0_dp          !! reading the deck [s]
       type(run_seconds_type) :: seconds
       real(dp) :: seconds_write = 0.0_dp         !! writing; the output layer adds to it [s]
@@ -68,6 +69,7 @@ module run_summaries
       character(:), allocatable :: words         !! its value in words
       real(dp) :: number = 0.0_dp                !! its value, where it is a number
       character(:), allocatable :: attribute     !! its name in `/run`; empty: not there
+      character(:), allocatable :: member        !! its name in JSON
       character(7), private :: kind = 'text'     !! of the attribute: text, integer, long or real
    contains
       procedure :: is_told
@@ -113,8 +115,8 @@ contains
          call add(entries, in_both, 'unknown displacements', sizes%equations_mechanical, &
             'equations_mechanical')
          call add(entries, in_both, 'contact unknowns', sizes%contact_unknowns, 'contact_unknowns')
-         call add(entries, in_check, 'memory of a run', to_text(nint(model%memory_needed/ &
-            1.0e6_dp))//' MB (estimate)')
+         call add(entries, in_check, 'memory of a run', nint(model%memory_needed/1.0e6_dp), &
+            behind=' MB (estimate)', member='memory_megabytes')
          call add(entries, in_listing, 'solver', or_blank(run%solver), 'solver')
          call add(entries, in_listing, 'bytes of factors', sizes%factor_bytes, 'factor_bytes')
          call add(entries, in_listing, 'smallest pivot', sizes%smallest_pivot, 'smallest_pivot', &
@@ -149,8 +151,8 @@ contains
       integer :: i
 
       associate (seconds => run%seconds)
-         times = [run%seconds_read, seconds%assemble, seconds%reduce, seconds%iterate, &
-            seconds%recover, run%seconds_write]
+         times = run%seconds_before + [run%seconds_read, seconds%assemble, seconds%reduce, &
+            seconds%iterate, seconds%recover, run%seconds_write]
       end associate
       do i = 1, size(stages)
          call add(entries, in_times, trim(stage_labels(i)), times(i), 'seconds_'//trim(stages(i)))
@@ -173,18 +175,21 @@ contains
       call add(entries, nowhere, '', run%verify_failed, 'verify_failed')
    end subroutine add_end
 
-   subroutine add(entries, told, label, value, attribute, behind)
+   subroutine add(entries, told, label, value, attribute, behind, member)
       type(run_entry_type), allocatable, intent(inout) :: entries(:)
       integer, intent(in) :: told
       character(*), intent(in) :: label
       class(*), intent(in) :: value
-      character(*), intent(in), optional :: attribute, behind
+      character(*), intent(in), optional :: attribute, behind, member
       type(run_entry_type) :: entry
 
       entry%told = told
       entry%label = label
       entry%attribute = ''
       if (present(attribute)) entry%attribute = attribute
+      entry%member = label
+      if (entry%attribute /= '') entry%member = attribute
+      if (present(member)) entry%member = member
       select type (value)
       type is (character(*))
          entry%words = value
@@ -211,7 +216,6 @@ contains
       type(run_summary_type), intent(in) :: run
       type(model_type), intent(in) :: model
       type(run_entry_type), allocatable :: entries(:)
-      character(:), allocatable :: name
       integer :: i
 
       entries = run_entries(run, model)
@@ -219,12 +223,10 @@ contains
       do i = 1, size(entries)
          associate (entry => entries(i))
             if (.not. entry%is_told(in_check)) cycle
-            name = entry%label
-            if (entry%attribute /= '') name = entry%attribute
             if (entry%kind == 'text') then
-               call document%put(entry%words, name)
+               call document%put(entry%words, entry%member)
             else
-               call document%put(entry%number, name)
+               call document%put(entry%number, entry%member)
             end if
          end associate
       end do

@@ -7,7 +7,7 @@ module summary
       zone_words
    use contact_system, only: contact_open, contact_stick
    use interface_quantities, only: is_end_of_face, rises_to_end
-   use increment_quantities, only: leading_words, stability_words
+   use increment_quantities, only: history_estimated, leading_words, stability_words
    use equations, only: section_nodes
    use field_quantities, only: maxima
    use kinds, only: dp
@@ -17,7 +17,7 @@ module summary
    use model_words, only: has_many
    use no_estimates, only: at_corner, mark_of, no_finer_value, no_reason, reason_inside_step, &
       reason_of_run
-   use quantity_types, only: quantity_type
+   use quantity_types, only: find_quantity, quantity_type
    use records, only: body_uncertainty_type, contact_record_type, increment_record_type, &
       uncertainty_type
    use text, only: append, few_digits, or_blank, percent, string_type, to_text
@@ -65,6 +65,8 @@ module summary
       real(dp), allocatable, private :: inelastic_strain(:, :)
       type(string_type), allocatable, private :: steps(:)   !! a line for each step and interface
       real(dp), allocatable :: solid_time          !! when the last point became solid [time]
+      !> Uncertainties of `history_estimated` of increment_quantities, or none
+      type(uncertainty_type), allocatable :: history_errors
       !> (2, sections) forces of pre-tension sections and their uncertainties, NaN for none
       real(dp), allocatable, private :: pre_tension(:, :)
       character(:), allocatable :: stability       !! whether it lasts; or empty
@@ -108,6 +110,9 @@ contains
       if (allocated(record%cycle)) self%cycle = record%cycle
       if (allocated(self%solid_time)) deallocate (self%solid_time)
       if (allocated(record%solid_time)) self%solid_time = record%solid_time
+      if (allocated(self%history_errors)) deallocate (self%history_errors)
+      if (allocated(record%history_uncertainties)) self%history_errors = &
+         record%history_uncertainties
       if (allocated(record%inelastic_strain)) self%inelastic_strain = record%inelastic_strain
       if (allocated(record%pre_tension)) then
          self%pre_tension = spread(record%pre_tension, 1, 2)
@@ -189,7 +194,7 @@ contains
          if (any(melts(model%materials))) most_lines = most_lines + 1
          if (allocated(model%couplings)) most_lines = most_lines + 1 + &
             count(model%couplings%is_section())
-         if (any(model%steps%stability_frequency > 0)) most_lines = most_lines + 2 + &
+         if (any(model%steps%stability_frequency > 0)) most_lines = most_lines + 3 + &
             maxval(model%steps%stability_modes)/leading_in_line
          most_lines = most_lines + count([any(model%materials%law%strains(1) > 0), &
             any(model%materials%law%strains(2) > 0)])
@@ -238,8 +243,7 @@ contains
       end if
       if (allocated(self%pre_tension)) call add_pre_tensions(self, model, lines)
       if (allocated(self%inelastic_strain)) call add_strains(self, model, lines)
-      if (allocated(self%solid_time)) call append(lines, summary_line('all solid at', &
-         self%solid_time, mark_of(reason_inside_step(model)), or_blank(model%units%time), ''))
+      if (allocated(self%solid_time)) call add_solid_time(self, model, lines)
       if (allocated(self%cycle)) call append(lines, self%cycle)
       if (self%stability /= '') call append(lines, self%stability)
       if (allocated(self%leading)) call append(lines, leading_words(self%leading, or_blank( &
@@ -266,6 +270,20 @@ contains
          end associate
       end do
    end subroutine add_pre_tensions
+
+   !> When all was solid.
+   subroutine add_solid_time(self, model, lines)
+      class(summary_type), intent(in) :: self
+      type(model_type), intent(in) :: model
+      type(string_type), allocatable, intent(inout) :: lines(:)
+      character(:), allocatable :: words
+
+      words = mark_of(reason_inside_step(model))
+      if (allocated(self%history_errors)) words = uncertainty_words(self%history_errors, &
+         find_quantity(history_estimated, 'solid_time'))
+      call append(lines, summary_line('all solid at', self%solid_time, words, &
+         or_blank(model%units%time), ''))
+   end subroutine add_solid_time
 
    !> The largest inelastic strains where they are not among the maxima of bodies.
    subroutine add_strains(self, model, lines)

@@ -1,12 +1,12 @@
 !> Judges the *VERIFY cards of a deck on the increments as they come.
 module verification
-   use, intrinsic :: ieee_arithmetic, only: ieee_is_nan
+   use, intrinsic :: ieee_arithmetic, only: ieee_is_nan, ieee_quiet_nan, ieee_value
    use contact_points, only: contact_points_type
-   use checked_values, only: is_estimable, values_asked_for, worst_node, worst_of
+   use checked_values, only: is_estimable, is_of_motions, values_asked_for, worst_node, worst_of
    use due_output, only: is_followed, is_judged
    use kinds, only: dp
    use model, only: model_type, verify_type
-   use no_estimates, only: mark_of, no_reason, reason_inside_step
+   use no_estimates, only: mark_of, no_finer_value, no_reason, of_points, reason_inside_step
    use records, only: increment_record_type
    use reached_levels, only: reached_level_type, exchange_levels
    use state_tables, only: reals, state_table_type, words
@@ -65,16 +65,25 @@ contains
       integer, intent(in) :: point_node(:)                !! (points) node index of each point
       real(dp), allocatable :: values(:)
       character(:), allocatable :: reason
-      integer :: i
+      real(dp) :: uncertainty
+      integer :: i, no_estimate
 
       do i = 1, size(self%outcomes)
+         no_estimate = reason_inside_step(model)
+         uncertainty = ieee_value(1.0_dp, ieee_quiet_nan)
+         if (allocated(record%check_uncertainties)) then
+            no_estimate = record%check_uncertainties%no_estimate(i)
+            uncertainty = record%check_uncertainties%total(i)
+         end if
          if (is_followed(model%verifications(i), record, model)) then
             call self%levels(i)%follow(model%verifications(i), record, model, interfaces, &
-               point_node)
+               point_node, uncertainty)
          end if
          if (.not. is_judged(model%verifications(i), record, model)) cycle
          if (allocated(model%verifications(i)%level)) then
-            call self%levels(i)%times(values, reason)
+            call self%levels(i)%times(values, uncertainty, reason)
+            no_estimate = merge(reason_inside_step(model), no_reason, ieee_is_nan(uncertainty))
+            if (ieee_is_nan(uncertainty) .and. no_estimate == no_reason) no_estimate = of_points
          else
             call values_asked_for(model%verifications(i), record, model, interfaces, point_node, &
                values, reason)
@@ -85,13 +94,12 @@ contains
          if (.not. self%outcomes(i)%passed) self%outcomes(i)%node = worst_node( &
             model%verifications(i), model%mesh, point_node, values)
          if (.not. is_estimable(model%verifications(i))) cycle
-         self%outcomes(i)%no_estimate = reason_inside_step(model)
-         if (allocated(record%check_uncertainties)) then
-            associate (found => record%check_uncertainties)
-               self%outcomes(i)%no_estimate = found%no_estimate(i)
-               if (.not. ieee_is_nan(found%total(i))) self%outcomes(i)%uncertainty = found%total(i)
-            end associate
+         if (is_of_motions(model%verifications(i))) then
+            no_estimate = no_finer_value
+            uncertainty = ieee_value(1.0_dp, ieee_quiet_nan)
          end if
+         self%outcomes(i)%no_estimate = no_estimate
+         if (.not. ieee_is_nan(uncertainty)) self%outcomes(i)%uncertainty = uncertainty
       end do
    end subroutine judge
 
@@ -198,6 +206,7 @@ contains
       type(outcome_type) :: outcome
 
       outcome%judged = .true.
+      outcome%passed = .not. check%expects
       outcome%reason = reason
       if (reason /= '') return
       outcome%found = worst_of(check, values)
@@ -205,6 +214,7 @@ contains
          outcome%reason = 'there is no value (NaN)'
          return
       end if
+      if (.not. check%expects) return
       outcome%deviation = abs(outcome%found - check%value)
       outcome%passed = outcome%deviation <= check%tolerance
       if (.not. check%relative) return

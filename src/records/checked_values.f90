@@ -10,14 +10,15 @@ module checked_values
    use materials, only: reference_nodes
    use mesh, only: mesh_type
    use model, only: model_type, verify_type
-   use quantity_types, only: find_quantity, of_history, of_nodes, of_references, of_sections, &
-      quantity_type
+   use quantity_types, only: find_quantity, needs_stability, of_history, of_nodes, of_references, &
+      of_sections, quantity_type
    use records, only: contact_record_type, increment_record_type
    use reported_quantities, only: verifiable
    use text, only: read_integer, read_real, to_upper
    implicit none
    private
-   public :: is_estimable, is_on_interface, is_recovered, values_asked_for, worst_node, worst_of
+   public :: is_estimable, is_of_motions, is_on_interface, is_recovered, values_asked_for, &
+      worst_node, worst_of
 
    !> Quantities of nodes that are there without a recovery of stress and heat flux.
    character(*), parameter :: own_of_nodes(7) = [character(5) :: 'U1', 'U2', 'NT', 'SOLID', &
@@ -25,7 +26,7 @@ module checked_values
 
 contains
 
-   !> Whether the value of a check has an error that a finer mesh shows.
+   !> Whether the quantity of a check has an error that a finer mesh shows.
    pure logical function is_estimable(check)
       type(verify_type), intent(in) :: check
       type(quantity_type) :: quantity
@@ -34,8 +35,16 @@ contains
       is_estimable = .not. (quantity%is_integer .or. quantity%is_geometry .or. &
          any(quantity%unit == [character(4) :: '-', 'time', 'load']) .and. &
          all(quantity%kind /= [of_nodes, of_references]) .and. .not. quantity%is_estimated)
-      is_estimable = is_estimable .and. .not. allocated(check%level)
    end function is_estimable
+
+   !> Whether the value of a check is of small motions, which a finer mesh does not have.
+   pure logical function is_of_motions(check)
+      type(verify_type), intent(in) :: check
+      type(quantity_type) :: quantity
+
+      quantity = verifiable(find_quantity(verifiable, check%quantity))
+      is_of_motions = quantity%needs == needs_stability
+   end function is_of_motions
 
    !> Whether the value of a check is recovered from those of elements.
    pure logical function is_recovered(check)

@@ -2,6 +2,7 @@
 module increment_quantities
    use, intrinsic :: ieee_arithmetic, only: ieee_quiet_nan, ieee_value
    use kinds, only: dp
+   use no_estimates, only: mark_of, no_finer_value
    use quantity_types, only: needs_branch, needs_coupling, needs_creep, needs_dilatation, &
       needs_friction_heat, needs_heat, needs_laws, needs_mechanics, needs_melting, &
       needs_plasticity, needs_references, needs_sections, needs_stability, needs_storage, &
@@ -278,7 +279,8 @@ contains
       end do
       if (unit /= '') words = ' in 1/'//unit//words
       words = trim(merge('growth rates of the leading modes', &
-         'growth rate of the leading mode  ', size(leading, 2) > 1))//words
+         'growth rate of the leading mode  ', size(leading, 2) > 1))//words// &
+         mark_of(no_finer_value)
    end function leading_words
 
    !> A quantity of the bodies, of the elements, of the pre-tension sections, of reference nodes or

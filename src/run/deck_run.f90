@@ -86,7 +86,10 @@ contains
          call set_error(error, status_verify, outcome%failed_checks(1)%value)
          call outcome%fail(error)
       end if
-      if (.not. allocated(deck%finished)) outcome%report%seconds = wall_seconds() - since
+      if (allocated(deck%finished)) return
+      outcome%report%seconds = wall_seconds() - since
+      if (allocated(deck%origin)) outcome%report%seconds = outcome%report%seconds + &
+         sum(deck%origin%seconds)
    end subroutine run_deck
 
    !> Solves a deck as it is written, or as the variation of a later round has it. The files of the
@@ -115,7 +118,11 @@ contains
             output%run%verify_failed = outcome%report%verify_failed
             call describe_run(self%path, model, simulation, output%run)
             output%run%settings = settings_in_words(self%command)
-            if (allocated(self%deck%origin)) output%run%origin = self%deck%origin%words()
+            if (allocated(self%deck%origin)) then
+               output%run%origin = self%deck%origin%words()
+               output%run%seconds_before = self%deck%origin%seconds
+               outcome%report%iterations = self%deck%origin%iterations
+            end if
             if (model%uncertainty == uncertainty_full .and. .not. (self%command%quiet .or. &
                output%kept_round > 0)) call &
                print_line(output_unit, self%path//': '//cost_words(model))
@@ -204,11 +211,11 @@ contains
       if (.not. allocated(self%deck%finished)) return
       associate (outcome => self%outcome, finished => self%deck%finished, &
          failed => self%deck%finished%failed_checks)
-         outcome%report%increments = finished%increments
-         outcome%report%iterations = finished%iterations
+         outcome%report%increments = size(finished%iterations)
+         outcome%report%iterations = sum(finished%iterations)
          outcome%report%verify_passed = finished%passed_checks
          outcome%report%verify_failed = failed
-         outcome%report%seconds = finished%seconds
+         outcome%report%seconds = sum(finished%seconds)
          if (failed == 0) return
          call set_error(error, status_verify, 'its result is finished, and '//counted(failed, &
             '*VERIFY check')//' failed')

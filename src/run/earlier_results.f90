@@ -25,6 +25,8 @@ module earlier_results
       type(state_table_type) :: table        !! state of its run
       integer :: counts(2) = 0               !! restarts of the result up to it, and their values
       integer :: increment = 0               !! at whose end it is
+      integer :: iterations = 0              !! of the increments up to it
+      real(dp) :: seconds(size(stages)) = 0.0_dp   !! of the runs that were cut short [s]
       real(dp) :: time = 0.0_dp              !! total time there [time]
    contains
       procedure :: words => words_of_origin
@@ -37,11 +39,10 @@ module earlier_results
       character(:), allocatable :: settings   !! options that its run was given
       type(string_type), allocatable :: images(:)   !! its deck
       logical :: is_finished = .false.        !! whether its run came to its end
-      integer :: increments = 0               !! that it holds
-      integer :: iterations = 0               !! of these
+      integer, allocatable :: iterations(:)   !! (increments) of those that it holds
       integer :: passed_checks = 0            !! *VERIFY checks
       integer :: failed_checks = 0            !! *VERIFY checks
-      real(dp) :: seconds = 0.0_dp            !! of all stages of its run [s]
+      real(dp) :: seconds(size(stages)) = 0.0_dp   !! of its run [s]
       real(dp), allocatable, private :: places(:, :)   !! (columns, restarts) as place_set
    contains
       procedure :: read => read_result
@@ -87,12 +88,11 @@ contains
       self%passed_checks = nint(file%number('/run', 'verify_passed'))
       self%failed_checks = nint(file%number('/run', 'verify_failed'))
       do i = 1, size(stages)
-         self%seconds = self%seconds + file%number('/run', 'seconds_'//trim(stages(i)))
+         self%seconds(i) = file%number('/run', 'seconds_'//trim(stages(i)))
       end do
       call file%strings('/deck', self%images)
       call file%reals('/history/iterations', values)
-      self%increments = size(values)
-      self%iterations = nint(sum(values))
+      self%iterations = nint(values)
       deallocate (values)
       allocate (values(0))
       if (file%has(restart_group)) call file%reals(place_set, values)
@@ -286,6 +286,9 @@ contains
       origin%path = self%path
       origin%increment = nint(self%places(at_increment, restart))
       origin%time = self%places(at_time, restart)
+      origin%iterations = sum(self%iterations(:origin%increment))
+      ! A run that came to its end spent time on increments that this one does not have.
+      if (.not. self%is_finished) origin%seconds = self%seconds
       associate (count => nint(self%places(at_count, :)))
          before = sum(count(:restart - 1))
          origin%counts = [restart, before + count(restart)]

@@ -48,13 +48,13 @@ def sliding(way, pair=FINITE, start=START, scale=1.0, friction=0.0, increment=0.
         *steps])
 
 
-def final(folder, name, cards):
+def final(folder, name, cards, face="FACE"):
     """Return the fields of the last increment of a deck, and its way along x in its pad."""
     result = solve(write(folder / f"{name}.inp", cards))
     with h5py.File(result) as file:
-        found = {key: file[f"contact/FACE/{key}"][-1] for key in ("pressure", "gap", "heat_flux",
-                                                                  "shear", "conductance")
-                 if f"contact/FACE/{key}" in file}
+        found = {key: file[f"contact/{face}/{key}"][-1] for key in ("pressure", "gap", "heat_flux",
+                                                                    "shear", "conductance")
+                 if f"contact/{face}/{key}" in file}
         number = file["VTKHDF/PointData/node_id"][()]
         for key in ("temperature", "von_mises", "displacement"):
             if f"VTKHDF/PointData/{key}" in file:
@@ -83,6 +83,14 @@ def test_a_pad_slid_is_the_pad_drawn_there(tmp_path, way, pair):
     drawn = final(tmp_path, "drawn", sliding(0, pair, START + way))
     assert_same_fields(slid, drawn, 1e-6, way)
     assert drawn["heat_flux"].max() > 10.0
+
+
+def test_a_pad_of_a_pattern_slides_along_all_of_the_rail(tmp_path):
+    cards = sliding(1.9)
+    by_pattern = [card.replace("PAD.BOTTOM, RAIL.TOP", "P*.BOTTOM, RAIL.TOP") for card in cards]
+    assert by_pattern != cards
+    assert_same_fields(final(tmp_path, "pattern", by_pattern, "FACE-PAD.BOTTOM"),
+                       final(tmp_path, "names", cards), 1e-12)
 
 
 def test_tiny_strains_give_what_small_sliding_gives_where_the_pad_is_drawn(tmp_path):

@@ -122,6 +122,9 @@ def test_messages_of_a_refused_deck_are_those_of_the_terminal(name):
 def test_check_tells_what_the_deck_holds(tmp_path):
     document, _ = document_of("check", RODS)
     assert document["model"]["bodies"] == 2
+    memory = re.search(r"memory of a run \.* (\d+) MB", run("check", RODS).stdout)[1]
+    assert document["model"]["memory_megabytes"] == int(memory)
+    assert "memory of a run" not in document["model"]
     assert document["interfaces"]["GAP"]["contact_points"] == 3
     assert document["interfaces"]["GAP"]["smallest_initial_gap"] == pytest.approx(0.03, rel=1e-12)
     assert list(tmp_path.iterdir()) == []

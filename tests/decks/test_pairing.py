@@ -79,6 +79,13 @@ def test_listing_and_result_name_the_pairing_and_why(tmp_path, columns, asked, p
     assert f"pairing of F .............. {pairing}" in run("check", deck).stdout
 
 
+def test_faces_that_slide_far_are_why_faces_that_match_have_mortar_points(tmp_path):
+    deck = write(tmp_path / "d.inp", (3, 0.0, 3.0), (3, 0.0, 3.0))
+    deck.write_text(deck.read_text().replace("NAME=F", "NAME=F, SLIDING=FINITE"))
+    said = "SURFACES, because SLIDING=FINITE moves the faces along each other\n"
+    assert f"pairing of F .............. {said}" in run("check", deck).stdout
+
+
 def test_a_node_beside_its_partner_is_why_faces_do_not_match(tmp_path):
     deck = write(tmp_path / "d.inp", (3, 0.1, 3.0), (3, 0.0, 3.0))
     solve(deck)

@@ -1,6 +1,7 @@
 """*VERIFY of the time at which a value reaches another one: linear courses, whose times are known."""
 
 import json
+import math
 
 import h5py
 import pytest
@@ -46,7 +47,7 @@ def test_times_of_linear_courses_pass_and_others_fail(tmp_path, cards, check):
     if "RFL" in check:   # what enters at a corner of the bottom: a sixth of half of an element
         check = f"RFL reaches {-CONDUCTIVITY * 25.0 * 0.5 / 6!r}, 1, LAST, 0.1"
     found, _ = judged(tmp_path, cards, f"{check}, 1.E-9")
-    assert found[0]["passed"] and "uncertainty" not in found[0]
+    assert found[0]["passed"] and "uncertainty" not in found[0]   # of the last increment alone
     found, said = judged(tmp_path, cards, f"{check}01, 1.E-9", status=4)
     assert not found[0]["passed"] and "expected " in said
 
@@ -105,3 +106,33 @@ def test_a_run_that_goes_on_remembers_what_was_reached(tmp_path):
         result = go_on(deck, deck.with_suffix(".vtkhdf"), tmp_path / f"from{time}", time)
         with h5py.File(result) as file:
             assert file["run"].attrs["verify_passed"] == 3
+
+
+@pytest.mark.parametrize(("increment", "level"), [(0.3, 50.0), (0.15, 50.0), (0.3, 71.0), (0.4, 20.0), (0.25, 5.0)])
+def test_the_time_at_which_a_block_has_cooled_is_within_its_uncertainty(tmp_path, increment, level):
+    """A block so conductive that its temperature is even: exp(-t), by hand."""
+    def cooled(errors):
+        return [f"*OPTIONS, ERRORS={errors}", *BLOCK,
+                *material("BLOCK", conductivity=1e6, density=1.0, specific_heat=1.0),
+                "*INITIAL CONDITIONS, TYPE=TEMPERATURE", "BLOCK, 100.", "*STEP", "*HEAT TRANSFER, DIRECT",
+                f"{increment!r}, 6.", "*FILM", "BLOCK, F3, 0., 1.", "*END STEP"]
+
+    check = f"NT reaches {level!r}, 1, LAST, 1., 10., ABS"
+    (found,), _ = judged(tmp_path, cooled("FULL"), check)
+    error = abs(found["found"] - math.log(100.0 / level))
+    assert 1e-6 < error < found["uncertainty"] < 20.0 * error
+    (found,), _ = judged(tmp_path, cooled("LAST"), check)
+    assert found["no_estimate"] == "path; ERRORS=FULL"
+
+
+def test_a_value_is_asked_for_without_an_expectation(tmp_path):
+    """It has its uncertainty, and fails no run where it does not exist."""
+    deck = write(tmp_path / "deck.inp", ["*OPTIONS, ERRORS=FULL", *WARM, "*VERIFY, KIND=NONE",
+                                         "NT reaches 70., 1, LAST", "NT, BLOCK.TOP, 0.2",
+                                         "NT reaches 500., 1, LAST"])
+    process = run("run", deck, "--json", "--out", tmp_path)
+    assert process.returncode == 0 and "check failed" not in process.stderr
+    _, value, never = json.loads(process.stdout)["checks"]
+    assert never["reason"] == "never reached" and "found" not in never
+    assert value["found"] == pytest.approx(70.0) and value["uncertainty"] < 1e-9
+    assert not {"expected", "tolerance", "deviation"} & value.keys()

@@ -424,6 +424,7 @@ def test_a_batch_is_resumed(long, long_result, tmp_path):
     process.communicate(timeout=PATIENCE)
     assert not (tmp_path / "two_rods.vtkhdf").exists()
     first = batch_rows(tmp_path)["short"]
+    spent = stage_seconds(tmp_path / "long.vtkhdf")
     before = (tmp_path / "short.vtkhdf").stat().st_mtime_ns
     process = run("run", short, long, later, "--out", tmp_path, "--resume")
     assert process.returncode == 0, process.stderr
@@ -436,6 +437,12 @@ def test_a_batch_is_resumed(long, long_result, tmp_path):
     assert again["seconds"] == f"{stage_seconds(tmp_path / 'short.vtkhdf'):.3f}"
     assert again["cpu_seconds"] == again["peak_megabytes"] == ""
     assert "solved 3" in process.stdout
+    # What went on counts with what was done before.
+    resumed = batch_rows(tmp_path)["long"]
+    with h5py.File(long_result) as file:
+        assert int(resumed["iterations"]) == file["history/iterations"][:].sum()
+    assert stage_seconds(tmp_path / "long.vtkhdf") > spent
+    assert float(resumed["seconds"]) > spent
     assert_same(long_result, tmp_path / "long.vtkhdf")
     assert kept(tmp_path / "two_rods.vtkhdf").size > 0
     assert "goes on" in (tmp_path / "long.lst").read_text()

@@ -52,6 +52,17 @@ def test_rigid_cylinder_and_sphere_press_as_hertz_says(tmp_path, kind, pairing):
         ("pressure", "FACE@0.", "LAST", peak, 0.01)])
 
 
+@pytest.mark.parametrize(("pairing", "said"), [
+    (", PAIRING=NODES", "NODES of the slave alone: the master is a rigid drawing"),
+    (", PAIRING=SURFACES", "SURFACES"),
+    ("", "SURFACES, because the master is a rigid drawing without nodes to pair"),
+    (", SLIDING=FINITE", "SURFACES, because the master is a rigid drawing without nodes to pair")])
+def test_check_says_why_faces_on_a_drawing_have_these_points(tmp_path, pairing, said):
+    cards = [card.replace(", PAIRING=NODES", pairing) for card in roller("CPE8", 1.0, "NODES")]
+    printed = run("check", write(tmp_path / "deck.inp", cards)).stdout
+    assert f"   pairing of FACE ........... {said}\n" in printed
+
+
 def hertz(kind, radius, width):
     """Return force, peak pressure, and the largest von Mises stress, which is below the middle."""
     modulus = YOUNG / (1 - POISSON**2)

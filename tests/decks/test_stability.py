@@ -179,6 +179,7 @@ def test_leading_modes_are_those_of_dense_eigenvalues(branch, tmp_path):
             said = re.search("growth rates? of the leading modes?: ((?:[^ ,]+(?:, )?)+)", words)[1]
             np.testing.assert_allclose([float(word) for word in said.split(", ")[:count]],
                                        rates[:count].real, rtol=1e-3)
+            assert said and "(no estimate: not there on a finer mesh)" in words
 
 
 def test_mode_is_that_of_the_rods(tmp_path):

@@ -1,6 +1,7 @@
 """Wear of faces: Archard's law under a constant force, at a fixed interference, over temperatures;
 beside sliding by any distance, friction, restart and uncertainties."""
 
+import json
 import re
 from itertools import pairwise
 from math import exp
@@ -175,3 +176,11 @@ def test_its_uncertainty_holds_the_exact_volume(tmp_path):
     told = run("run", "--quiet", deck, "--out", tmp_path).stderr
     value, half = map(float, re.search(r": (\S+) \+- ([^\s,]+)", told).groups())
     assert abs(value - exact) < half < 5 * abs(value - exact)
+
+
+def test_without_a_check_it_says_what_estimates_it(tmp_path):
+    deck = write(tmp_path / "deck.inp", ["*OPTIONS, ERRORS=FULL", *bar(0.25)])
+    found = json.loads(run("run", "--json", deck, "--out", tmp_path).stdout)
+    for side in ("slave", "master"):
+        told = found["summary"]["interfaces"]["C"][f"worn_volume_{side}"]
+        assert told["no_estimate"] == "*VERIFY; ERRORS=FULL" and "uncertainty" not in told

@@ -417,6 +417,29 @@ def test_the_page_can_be_read_in_both_schemes_and_on_a_telephone(cylinder, brows
     browser.look(1280, "light")
 
 
+def test_no_label_of_a_chart_touches_another_on_a_telephone(synthetic, browser):
+    """Of what has descenders beside the longest ticks, and of faces that wear."""
+    def wear(file):
+        contact = file["contact/CYLINDER"]
+        contact["gap"][...] = 1e-4 * contact["gap"][()] / contact["gap"][()].max()
+        contact["wear_slave"] = -1.2e-5 * np.ones(contact["gap"].shape)
+        contact["x"][...] *= 1.4e-4
+
+    browser.look(400, "light")
+    browser.open(synthetic(wear))
+    touching = """return [...document.querySelectorAll('figure svg')].flatMap(svg => {
+        const found = [...svg.querySelectorAll('text')].map(t => [t.textContent, t.getBoundingClientRect()]);
+        return found.flatMap(([a, one], k) => found.slice(k + 1).filter(([, other]) =>
+            one.left < other.right + 5 && other.left < one.right + 5 && one.top < other.bottom &&
+            other.top < one.bottom).map(([b]) => [a, b])); })"""
+    labels = "return ['gap', 'wear'].map(id => document.querySelector(`#${id} text:last-of-type`).textContent)"
+    assert browser.run(labels) == ["gap", "slave"]
+    assert browser.run(touching) == []
+    size = "return document.querySelector('#gap text').getBoundingClientRect().height"
+    assert browser.run(size) > 13
+    browser.look(1280, "light")
+
+
 def test_a_fine_mesh_has_a_page_below_five_megabytes(synthetic):
     page = synthetic(columns=145, rows=145, loads=(450.0, 900.0))
     assert page.stat().st_size < 5e6
@@ -653,6 +676,14 @@ def page_of_example(folder, name, *options, status=0):
     assert found == status, said
     assert main([str(folder / f"{name}.vtkhdf"), "--out", str(folder)]) == 0
     return (folder / f"{name}.html").read_text()
+
+
+def test_a_worn_volume_says_what_estimates_it(synthetic):
+    def wear(file):
+        file["contact/CYLINDER/worn_volume_slave"] = 1e-3 * file["history/load"][()]
+
+    row = re.search(r'<th scope="row"[^>]*>worn volume slave</th>(.*?)</tr>', synthetic(wear).read_text())[1]
+    assert re.findall(r"<td[^>]*>(.*?)</td>", row)[1] == "no estimate: *VERIFY; ERRORS=FULL"
 
 
 def test_an_edge_at_the_end_of_the_face_has_no_uncertainty(tmp_path):

@@ -18,7 +18,9 @@ from comparing import coarse_pictures  # noqa: E402, F401  a fixture
 from test_stability import BRANCHES, MIDDLE, middle, solved, stability_of  # noqa: E402
 
 from thercon.post.cli import main as plot  # noqa: E402
+from thercon.post.fields import words_below  # noqa: E402
 from thercon.post.report.cli import main as report  # noqa: E402
+from thercon.post.result import Result  # noqa: E402
 
 MODE = ["--quantity", "mode_temperature"]
 
@@ -48,22 +50,23 @@ def number(cell):
 def test_the_page_tells_of_every_analysis(result):
     rate = rod_modes.rates(MIDDLE, (3.6e6, 3.6e6), BRANCHES[1])[0].real
     half, full = page(result)
-    assert half[:3] == ["0.5", "stable", "0"] and half[4].startswith("falls to 1/e in ")
-    assert full[:3] == ["1", "unstable", "1"] and full[5] == "none"
+    assert half[:3] == ["0.5", "stable", "0"] and half[5].startswith("falls to 1/e in ")
+    assert full[:3] == ["1", "unstable", "1"] and full[6] == "none"
+    assert full[4] == "no estimate: not there on a finer mesh"
     assert number(full[3]) == pytest.approx(rate, rel=1e-3)
-    assert number(full[4].removeprefix("doubles in ")) == pytest.approx(np.log(2) / rate, rel=1e-3)
+    assert number(full[5].removeprefix("doubles in ")) == pytest.approx(np.log(2) / rate, rel=1e-3)
 
 
 def test_the_page_tells_what_decays_is_uncertain_or_not_known(tmp_path):
     stable, _ = solved(tmp_path, middle(branch=0), name="stable")
     rate = stability_of(stable)["growth_rate"][0]
     assert page(stable)[0][1] == "stable"
-    assert number(page(stable)[0][4].removeprefix("falls to 1/e in ")) == pytest.approx(
+    assert number(page(stable)[0][5].removeprefix("falls to 1/e in ")) == pytest.approx(
         -1 / rate, rel=1e-3)
     stable.with_suffix(".lst").unlink()
     assert page(stable)[0][1] == "–"
     unknown, _ = solved(tmp_path, middle(capacities=None, branch=0), name="unknown")
-    assert page(unknown) == [["1", "uncertain", *("–" * 4)]]
+    assert page(unknown) == [["1", "uncertain", *("–" * 5)]]
     without, _ = solved(tmp_path, middle(stability="**"), name="without")
     assert page(without) == []
 
@@ -90,6 +93,13 @@ def test_a_motion_is_drawn_on_its_shape(result, tmp_path, capsys):
     for name, drawn in factors.items():
         shift = np.array([row["y_drawn"] for row in drawn]) - places
         np.testing.assert_allclose(shift, expected[name] * moved, atol=1e-9 * expected[name] * abs(moved[most]))
+
+
+def test_the_picture_of_a_motion_tells_its_rate(result):
+    with Result(result) as opened:
+        said = words_below(opened, 3, 1.0, is_mode=True)
+    rate = rod_modes.rates(MIDDLE, (3.6e6, 3.6e6), BRANCHES[1])[0].real
+    assert number(re.search(r"growth rate (\S+)", said)[1]) == pytest.approx(rate, rel=1e-3)
 
 
 def test_a_motion_is_drawn_alone_and_where_there_is_one(result, tmp_path, capsys):

@@ -103,9 +103,10 @@ def test_a_summary_has_the_columns_of_a_table_of_runs(joint):
 def test_a_failed_check_is_no_exception(joint):
     joint.write_text(joint.read_text() + '*VERIFY, KIND=ANALYTIC, SOURCE="resistances"\n'
                      "heat_rate, JOINT, LAST, 3.6, 1.E-9\nNT, 8, LAST, 199., 1.E-9\n"
-                     "NT, 8, 0.5, 100., 0.1, ABS\nNT reaches 500., 8, LAST, 1., 0.1\n")
+                     "NT, 8, 0.5, 100., 0.1, ABS\nNT reaches 500., 8, LAST, 1., 0.1\n"
+                     "*VERIFY, KIND=NONE\nNT, 8, LAST\nNT reaches 500., 8, LAST\n")
     result = thercon.run("joint.inp")
-    assert result.status == 4 and list(result.checks["passed"]) == [True, False, True, False]
+    assert result.status == 4 and list(result.checks["passed"]) == [True, False, True, False, True, True]
     assert result.checks["found"][1] == pytest.approx(200.0)
     opened = thercon.open("joint")
     assert opened.status == 4

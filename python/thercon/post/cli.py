@@ -186,7 +186,7 @@ def add_fields(picture):
         "--scale",
         type=float,
         metavar="FACTOR",
-        help="magnify displacements (default 1; of a small motion, whose size is arbitrary, so much "
+        help="magnify displacements (default 1; of a mode, whose size is arbitrary, so much "
         "that it is seen); initial gaps are not magnified, so that above 1 bodies that touch seem to "
         "overlap",
     )

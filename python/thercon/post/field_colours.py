@@ -16,7 +16,7 @@ UNSEEN = 1e-4  # of the range of temperatures: so far they may be beyond the col
 UNIFORM = 1e-3  # of the largest magnitude: a smaller range has one colour
 BEYOND = 0.005  # of the area, at either end of a scale: so much may have values beyond its colours
 FAR = 1.5  # times the range of the others: values that extend it by less have colours too
-NEUTRAL = np.array([0.05, 0.2, 0.4, 0.6, 0.8, 1.0])  # levels of a motion: about 0 its sign tells nothing
+NEUTRAL = np.array([0.05, 0.2, 0.4, 0.6, 0.8, 1.0])  # levels of a mode: about 0 its sign tells nothing
 WIDE = 1.8  # width over height of models whose panels are one below the other
 
 

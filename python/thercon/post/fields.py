@@ -49,9 +49,9 @@ TITLES = {
     "flux_y": ("Heat flux $q_y$", "flux"),
     "stress_error": ("Estimated error of stress", "stress"),
     "heat_flux_error": ("Estimated error of heat flux", "flux"),
-    MODE: ("Temperature of the fastest motion", None),
+    MODE: ("Temperature of the leading mode", None),
 }
-AMPLITUDE = 0.02  # of the size of the model: displacement of a motion that is drawn
+AMPLITUDE = 0.02  # of the size of the model: displacement of a mode that is drawn
 COLUMNS = 3  # of panels
 LOOKED_AT = 20  # times at most
 MOST_NAMED = 8  # increments
@@ -168,13 +168,16 @@ def given_window(ends, whole):
     return window
 
 
-def fate(result, row):
-    """Return whether the motion at a row of /history grows, as the end of a title."""
+def rate_of(result, row):
+    """Return the growth rate of the mode at a row of /history; NaN where the file has none."""
     found = result.stability
     at = np.flatnonzero(found["time"] == result.history["time"][row]) if found else []
-    if not len(at):
-        return ""
-    rate = found["growth_rate"][at[-1]]
+    return found["growth_rate"][at[-1]] if len(at) else np.nan
+
+
+def fate(result, row):
+    """Return whether the mode at a row of /history grows, as the end of a title."""
+    rate = rate_of(result, row)
     return ", which grows" if rate > 0.0 else ", which decays" if rate < 0.0 else ""
 
 
@@ -188,7 +191,7 @@ def mode_factor(cells, displacement):
 def words_below(result, row, factor, is_mode=False):
     """Return load, time and what a magnification does."""
     words = result.load_words(row)
-    words += "\nsmall motion, its largest temperature 1" if is_mode else ""
+    words += f"{rate_words(result, row)}\nlargest temperature set to 1" if is_mode else ""
     words += f"; displacements $\\times$ {factor:g}" if factor != 1.0 else ""
     if result.given_gaps:
         return f"{words}\n{apart_words(result)}"
@@ -197,6 +200,14 @@ def words_below(result, row, factor, is_mode=False):
     elif factor > 1.0 and touches_after_a_gap(result):
         words += ",\ninitial gaps are not magnified:\nbodies that touch seem to overlap"
     return words
+
+
+def rate_words(result, row):
+    """Return a line with the growth rate of the mode that is drawn, where the file has it."""
+    rate, unit = rate_of(result, row), result.units.names.get("time")
+    if np.isnan(rate):
+        return ""
+    return f"\ngrowth rate {rate:.4g}".replace("-", "\N{MINUS SIGN}") + (f" 1/{unit}" if unit else "")
 
 
 def apart_words(result):

@@ -61,6 +61,7 @@ UNJUDGED = "inside a step: the mesh is not refined for this time"
 MARKED = "dotted lines are ends of steps; the mesh is refined for these alone"
 ROUND = ("cpu_seconds", "unknowns", "elements", "increments")
 ANALYSIS = ("time", "unstable_modes", "growth_rate", "period")
+NO_FINER_VALUE = "not there on a finer mesh"  # why growth rates have no uncertainty
 NO_ANALYSIS = ("no state was analysed: the run did not come to the end of a step with *STABILITY, nor to "
                "an increment of its FREQUENCY=")
 ITERATION = ("increment", "iteration", "residual", "g_min", "g_max")
@@ -405,6 +406,11 @@ class Result:
             known[key] = (text(attributes.get("unit", "")), text(attributes.get("components", "")).split(),
                           values[rows], why.get(key, inside))
         return known
+
+    @staticmethod
+    def reason_of(name):
+        """Return why a quantity that `uncertainties` does not have has none, if there is a reason."""
+        return "*VERIFY; ERRORS=FULL" if name.startswith("worn_volume") else ""
 
     @property
     def maxima(self):

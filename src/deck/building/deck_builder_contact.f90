@@ -70,7 +70,7 @@ contains
    end subroutine build_contacts
 
    !> Adds an interface for each slave surface that is opposite some master, where names of a data
-   !> card are patterns. Its master are those faces that are opposite.
+   !> card are patterns. Its master are those faces that are opposite, or all faces where it slides.
    subroutine add_matching(card, data, common, deck)
       type(keyword_card_type), intent(in) :: card
       type(data_card_type), intent(in) :: data
@@ -114,7 +114,8 @@ contains
          pairs = pairs + 1
          contact%slave = slaves(i)
          contact%master = chosen
-         if (size(part%faces, 2) < size(deck%mesh%surfaces(chosen)%faces, 2)) then
+         if (size(part%faces, 2) < size(deck%mesh%surfaces(chosen)%faces, 2) .and. &
+            .not. contact%follows_sliding) then
             part%name = deck%mesh%surfaces(chosen)%name
             part%card = deck%mesh%surfaces(chosen)%card
             deck%mesh%surfaces = [deck%mesh%surfaces, part]

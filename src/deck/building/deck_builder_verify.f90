@@ -2,7 +2,7 @@
 module deck_builder_verify
    use accuracy_targets, only: accuracy_target_type
    use card_parameters, only: needed_choice, take_parameter
-   use card_values, only: read_field, read_row
+   use card_values, only: check_extra, read_field, read_row
    use cards, only: data_card_type
    use equations, only: constrained_nodes, equation_nodes, section_nodes
    use deck_builder_steps, only: increment_rounding
@@ -40,7 +40,8 @@ contains
       places = cards_of(deck%cards, 'VERIFY')
       do k = 1, size(places)
          associate (card => deck%cards%keywords(places(k)))
-            kind = needed_choice(card, 'KIND', 'ANALYTIC/EXTERNAL/LEGACY/FIGURE/REGRESSION', deck)
+            kind = needed_choice(card, 'KIND', 'ANALYTIC/EXTERNAL/LEGACY/FIGURE/REGRESSION/NONE', &
+               deck)
             do j = 1, size(card%data)
                n = n + 1
                associate (data => card%data(j), check => deck%model%verifications(n))
@@ -60,6 +61,11 @@ contains
                      call check_where(data, deck%verifiable(quantity)%kind, deck, check)
                   end if
                   if (deck%analyses_sound) call read_when(data, deck, check)
+                  check%expects = kind /= 'NONE'
+                  if (.not. check%expects) then
+                     call check_extra(data, 3, 'quantity, where, when', deck)
+                     cycle
+                  end if
                   call read_row(data, '@quantity/@where/@when/value/tolerance >=0/@REL or ABS', &
                      deck, values, valid)
                   check%value = values(4)

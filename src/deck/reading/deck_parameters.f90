@@ -53,7 +53,8 @@ contains
          else if (len(value) == 0) then
             call report%error(place_type(), '--set '//settings(i)%value//' has no value')
          else if (self%settings%find(name) > 0) then
-            call report%error(place_type(), '--set gives '//name//' twice; leave one out')
+            call report%error(place_type(), '--set gives '//name//' twice; leave one '// &
+               'out (names are case-insensitive)')
          else
             call self%settings%add(name)
             call append(self%setting_names, name)
@@ -87,7 +88,8 @@ contains
       first = equals - 1 + first_text(field%text(equals + 1:))
       value = field%text(first + 1:)
       if (self%names%find(name) > 0) then
-         call report%error(field%place, 'parameter '//name//' is defined twice')
+         call report%error(field%place, 'parameter '//name//' is defined twice; names '// &
+            'are case-insensitive')
          return
       end if
       setting = self%settings%find(name)

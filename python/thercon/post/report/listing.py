@@ -8,7 +8,7 @@ from itertools import takewhile
 CHECK = re.compile(
     r"^ *(\d+)  (.{10}) (.{24,}?) (.{16})(.{11})(.{15})(.{15})(.{10})(.{10}) (REL|ABS) +(PASS|FAIL)$"
 )
-REMARK = re.compile(r"^ {8}(source|failed): (.*)$")
+REMARK = re.compile(r"^ {8}(source|failed|no value): (.*)$")
 ITEM = re.compile(r"^   - (.*)$")
 ANALYSIS = re.compile(r"^   stability: (\w+)")
 POINTER = re.compile(r"(;[^;]*)?, (?:or )?see ENDED EARLY.*$")
@@ -30,7 +30,7 @@ class Check:
     measure: str
     verdict: str
     source: str = ""
-    failed: str = ""
+    failed: str = ""  # why, or why there is no value
 
 
 @dataclass
@@ -66,7 +66,8 @@ def read_listing(path, cards):
         if check:
             found.checks.append(Check(*(part.strip() for part in check.groups())))
         elif remark and found.checks:
-            setattr(found.checks[-1], *remark.groups())
+            name, words = remark.groups()
+            setattr(found.checks[-1], "source" if name == "source" else "failed", words)
     found.warnings = items(section(lines, "WARNINGS"))
     found.stability = analyses(lines)
     # The table of rounds is set off from the targets.

@@ -55,6 +55,15 @@ function ticks(low, high, most) {
       found.push(Number((k * step).toPrecision(12)));
    return found;
 }
+// Fewer where their labels would touch, on an axis of this length [px].
+function roomyTicks(low, high, most, length) {
+   const found = ticks(low, high, most), apart = length * (found[1] - found[0]) / (high - low);
+   return most > 1 && apart < 8 + widest(found) ? roomyTicks(low, high, most - 1, length) : found;
+}
+const pen = document.createElement('canvas').getContext('2d');
+pen.font = '13px system-ui, "Liberation Sans", Arial, sans-serif';   // that of charts
+const widthOf = words => pen.measureText(words).width;
+const widest = numbers => Math.max(...numbers.map(v => widthOf(show(v))));
 const finite = values => Array.from(values).filter(Number.isFinite);
 function rangeOf(values, zero) {
    let low = zero ? 0 : Infinity, high = zero ? 0 : -Infinity;
@@ -66,15 +75,15 @@ function rangeOf(values, zero) {
 const peak = values => values.reduce((most, v) => Math.abs(v) > most ? Math.abs(v) : most, 0);
 // lines: {x, y, off, colour, dash, mark, name}, off the uncertainties of y; clouds: {points, shape, colour, name}; uprights: [x]
 function chart(box, options) {
-   const W = Math.min(options.width || 480, box.clientWidth || 480), H = options.height || 300;
+   const W = Math.min(options.width || 480, box.clientWidth || box.parentElement.clientWidth || 480);   // empty ones have none
+   const H = options.height || 300;
    const [x0, x1] = options.xRange, [y0, y1] = options.yRange;
-   const widest = Math.max(...ticks(y0, y1, 5).map(t => show(t).length));
-   const left = Math.max(50, 30 + 7.5 * widest), right = 10, top = 14, bottom = 44;
+   const left = Math.max(50, 32 + widest(ticks(y0, y1, 5))), right = 10, top = 14, bottom = 44;
    const X = v => left + (v - x0) / (x1 - x0) * (W - left - right);
    const Y = v => H - bottom - (v - y0) / (y1 - y0) * (H - top - bottom);
    const out = [], id = `${box.id}-clip`;
    out.push(html`<clipPath id="${id}"><rect x="${left}" y="${top}" width="${W - left - right}" height="${H - top - bottom}"/></clipPath>`);
-   for (const t of ticks(x0, x1, 6))
+   for (const t of roomyTicks(x0, x1, 6, W - left - right))
       out.push(html`<path d="M${X(t)} ${H - bottom}v5" stroke="var(--ink)"/><text class="tick" x="${X(t)}" y="${H - bottom + 18}" text-anchor="middle">${show(t)}</text>`);
    for (const t of ticks(y0, y1, 5))
       out.push(html`<path d="M${left} ${Y(t)}H${W - right}" stroke="var(--rule)"/><text class="tick" x="${left - 6}" y="${Y(t) + 4}" text-anchor="end">${show(t)}</text>`);
@@ -114,7 +123,7 @@ function chart(box, options) {
 function legend(out, entries, width, left, top) {
    let x = left, y = top;
    for (const entry of entries) {
-      const room = 38 + 7 * entry.name.length;
+      const room = 38 + widthOf(entry.name);
       if (x > left && x + room > width) { x = left; y += 18; }
       out.push(entry.shape ? html`<path d="${entry.shape(x + 12, y - 4)}" fill="${entry.fill}" stroke="${entry.colour}"/>` :
          html`<path d="M${x} ${y - 4}h24" stroke="${entry.colour}" stroke-width="${entry.width || 1.6}" stroke-dasharray="${entry.dash || ''}"/>`);
@@ -239,6 +248,8 @@ function drawProfiles() {
    profile('flux', 'Heat flux', [['heat_flux', 'heat flux q', INK, '']], withUnit('heat flux q', unit('flux')), false,
       `Heat flux from slave to master, ${said}.`);
    profile('gap', 'Gap', [['gap', 'gap', BLUE, '']], withUnit('gap', unit('length')), false, `Gap, ${said}.`);
+   profile('wear', 'Wear', [['wear_slave', 'slave', VERMILION, ''], ['wear_master', 'master', BLUE, '']],
+      withUnit('depth worn', unit('length')), false, `Depth that each face has lost, ${said}.`);
 }
 function drawTotals() {
    const c = contact(), words = [];

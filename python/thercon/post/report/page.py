@@ -124,6 +124,7 @@ def contact_section(result):
 <figure id="tractions"></figure>
 <figure id="flux"></figure>
 <figure id="gap"></figure>
+<figure id="wear"></figure>
 </div>""", options=joined(options))
 
 

@@ -4,7 +4,7 @@ import re
 
 import numpy as np
 
-from ..result import ANALYSIS, NO_ANALYSIS, text, words_of
+from ..result import ANALYSIS, NO_ANALYSIS, NO_FINER_VALUE, text, words_of
 from ..units import unit_of
 from .data import contacts_of, plain
 from .html import html, joined
@@ -92,8 +92,8 @@ def uncertainties(result):
             cells = uncertainty_cells(*known[key][2:], contact.unit(key)) if key in known else None
             if contact.is_end_of_face(key, value):
                 cells = ["none: end of the face", contact.unit(key), *NO_PARTS]
-            rows.append([words_of(key) + (", s" if key.startswith("edge_") else ""), number(value),
-                         *(cells or ["no estimate", contact.unit(key), *NO_PARTS])])
+            cells = cells or [no_estimate(result.reason_of(key)), contact.unit(key), *NO_PARTS]
+            rows.append([words_of(key) + (", s" if key.startswith("edge_") else ""), number(value), *cells])
         found.append(uncertainty_table(f"Interface {contact.name} {said}", known, rows))
     found = [folded(found, f"{len(found)} interfaces {said}")] if len(found) > MOST_OPEN else found
     largest = f"{said}, stress away from singular corners"
@@ -128,16 +128,21 @@ def uncertainty_table(caption, known, rows):
 def uncertainty_cells(rows, why, unit):
     """Return uncertainty or why there is none, unit and the parts of it."""
     value, uncertainty, *parts = rows[-1]
-    words = f"no estimate: {why}" if why else "no estimate"
+    words = no_estimate(why)
     if np.isfinite(uncertainty):
         share = f" ({number(100.0 * uncertainty / abs(value), 2)} %)" if value else ""
         words = f"± {number(uncertainty, 2)}{share}"
     return [words, unit, *(number(part, 2) for part in parts)]
 
 
+def no_estimate(why):
+    """Return what stands in place of an uncertainty, with the reason where there is one."""
+    return f"no estimate: {why}" if why else "no estimate"
+
+
 def stability(result, listing):
-    """Return the analyses of stability: the fastest small motion of each state. Whether an answer is
-    uncertain is in the listing alone."""
+    """Return the analyses of stability: the leading mode of each state. Whether an answer is uncertain
+    is in the listing alone."""
     found = result.stability
     if found is None:
         return ""
@@ -154,8 +159,11 @@ def stability(result, listing):
             lasts = f"falls to 1/e in {number(-1.0 / rate, 4)}"
         swing = "none" if period == 0.0 else number(period, 4)
         growing = "–" if np.isnan(rate) else round(modes)
-        rows.append([number(time), said, growing, number(rate, 4), lasts, swing])
-    head = ["time", "state", "growing motions", "rate of the fastest motion", "which",
+        known = "–" if np.isnan(rate) else no_estimate(NO_FINER_VALUE)
+        rows.append([number(time), said, growing, number(rate, 4), known, lasts, swing])
+    unit = result.units.names.get("time")
+    rate = "growth rate of the leading mode" + (f" (1/{unit})" if unit else "")
+    head = ["time", "state", "growing modes", rate, "uncertainty (95 %)", "which",
             "period of its oscillation"]
     told = table("Stability in time", head, rows, (2, 3))
     return told if listing else joined([told, missing(result)])
