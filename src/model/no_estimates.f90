@@ -26,7 +26,7 @@ module no_estimates
 
    character(*), parameter :: words(of_checks) = [character(32) :: 'branches', 'ERRORS=NO', &
       'slides beyond its contact points', 'not unique', 'at a corner', &
-      'peak grows with the mesh', 'path; ERRORS=FULL', 'inside a step; ERRORS=FULL', &
+      'peak grows with the mesh', 'path; ERRORS=FULL', 'needs ERRORS=FULL', &
       'no solution on a finer mesh', 'not there on a finer mesh', 'SLIDING=FINITE; ERRORS=FULL', &
       'single points', '*VERIFY; ERRORS=FULL']
 

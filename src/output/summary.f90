@@ -45,6 +45,8 @@ module summary
    integer, parameter :: first_strain = size(maxima) - size(strain_names)   !! before it in maxima
    character(*), parameter :: heat_names(4) = [character(field_width) :: 'lowest temperature', &
       'highest temperature', 'heat in', 'heat out']
+   !> As quantities of history that have uncertainties, where they are
+   character(*), parameter :: quantity_names(4) = [character(8) :: '-', '-', 'heat_in', 'heat_out']
    character(*), parameter :: heat_units(4) = [character(11) :: 'temperature', 'temperature', &
       'power', 'power']
 
@@ -188,7 +190,8 @@ contains
       told = merge(1, interfaces, has_many(interfaces))
       associate (steps => size(model%steps), bodies => model%mesh%body_count)
          most_lines = 3 + told*(1 + size(estimated))
-         if (interfaces == 0) most_lines = 1 + size(heat_names) + 1
+         if (interfaces == 0) most_lines = 1
+         if (interfaces == 0 .or. has_many(interfaces)) most_lines = most_lines + size(heat_names) + 1
          if (interfaces > 0 .and. steps > 1) most_lines = most_lines + 1 + told*steps
          if (any(model%steps%cycle%steps > 0)) most_lines = most_lines + 1
          if (any(melts(model%materials))) most_lines = most_lines + 1
@@ -205,8 +208,8 @@ contains
    end function most_lines
 
    !> Adds when that increment was and where a branch turned, then each interface with a line for
-   !> each quantity that it has; none before the first increment. Without an interface the ranges of
-   !> the fields are there.
+   !> each quantity that it has; none before the first increment. Without an interface, and with many,
+   !> the ranges of the fields are there.
    subroutine add_lines(self, model, interfaces, lines)
       class(summary_type), intent(in) :: self
       type(model_type), intent(in) :: model
@@ -225,6 +228,7 @@ contains
          mark_of(reason_of_run(model)))
       if (has_many(size(interfaces))) then
          call add_largest(self, model, interfaces, lines)
+         call add_fields(self, model, lines)
       else
          do i = 1, size(interfaces)
             call append(lines, interfaces(i)%name)
@@ -243,7 +247,8 @@ contains
       end if
       if (allocated(self%pre_tension)) call add_pre_tensions(self, model, lines)
       if (allocated(self%inelastic_strain)) call add_strains(self, model, lines)
-      if (allocated(self%solid_time)) call add_solid_time(self, model, lines)
+      if (allocated(self%solid_time)) call append(lines, summary_line('all solid at', &
+         self%solid_time, history_words(self, model, 'solid_time'), or_blank(model%units%time), ''))
       if (allocated(self%cycle)) call append(lines, self%cycle)
       if (self%stability /= '') call append(lines, self%stability)
       if (allocated(self%leading)) call append(lines, leading_words(self%leading, or_blank( &
@@ -271,19 +276,20 @@ contains
       end do
    end subroutine add_pre_tensions
 
-   !> When all was solid.
-   subroutine add_solid_time(self, model, lines)
+   !> The uncertainty of a quantity of the increment, or why there is none; nothing of others.
+   pure function history_words(self, model, name) result(words)
       class(summary_type), intent(in) :: self
       type(model_type), intent(in) :: model
-      type(string_type), allocatable, intent(inout) :: lines(:)
+      character(*), intent(in) :: name
       character(:), allocatable :: words
+      integer :: q
 
+      words = ''
+      q = find_quantity(history_estimated, name)
+      if (q == 0) return
       words = mark_of(reason_inside_step(model))
-      if (allocated(self%history_errors)) words = uncertainty_words(self%history_errors, &
-         find_quantity(history_estimated, 'solid_time'))
-      call append(lines, summary_line('all solid at', self%solid_time, words, &
-         or_blank(model%units%time), ''))
-   end subroutine add_solid_time
+      if (allocated(self%history_errors)) words = uncertainty_words(self%history_errors, q)
+   end function history_words
 
    !> The largest inelastic strains where they are not among the maxima of bodies.
    subroutine add_strains(self, model, lines)
@@ -415,8 +421,8 @@ contains
 
       if (allocated(self%heat)) then
          do i = 1, size(heat_names)
-            call append(lines, summary_line(heat_names(i), self%heat(i), '', &
-               unit_label(heat_units(i), model%units), ''))
+            call append(lines, summary_line(heat_names(i), self%heat(i), history_words(self, &
+               model, quantity_names(i)), unit_label(heat_units(i), model%units), ''))
          end do
       end if
       if (allocated(self%displacement)) call append(lines, summary_line(displacement_name, &

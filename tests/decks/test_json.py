@@ -76,7 +76,7 @@ def test_units_that_the_deck_does_not_name_are_told_by_what_is_measured(tmp_path
 def test_nothing_else_is_on_standard_output(tmp_path):
     """Not what ERRORS=FULL costs either."""
     document, _ = document_of("run", RODS, "--out", tmp_path, "--errors", "full")
-    assert all(check["no_estimate"] != "inside a step; ERRORS=FULL"
+    assert all(check["no_estimate"] != "needs ERRORS=FULL"
                for check in document["checks"] if "no_estimate" in check)
 
 

@@ -117,7 +117,7 @@ def test_a_number_with_an_uncertainty_has_no_reason(tmp_path):
     with h5py.File(result) as file:
         assert not file["uncertainty/GAP/no_estimate"][:].any()
         assert file["uncertainty/reasons"].asstr()[0] == ""
-        assert file["uncertainty"].attrs["inside_step"] == "inside a step; ERRORS=FULL"
+        assert file["uncertainty"].attrs["inside_step"] == "needs ERRORS=FULL"
 
 
 def test_the_former_name_of_the_group_is_the_same_group(tmp_path):

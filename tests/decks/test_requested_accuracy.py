@@ -597,7 +597,7 @@ def test_a_first_round_that_is_not_whole_has_no_row(tmp_path):
     told = "requested accuracy not reached: round 1 did not come to its end\n"
     assert told in output and told in (tmp_path / "deck.lst").read_text()
     assert "CPU seconds" not in output
-    assert "(no estimate: inside a step; ERRORS=FULL)" in output
+    assert "(no estimate: needs ERRORS=FULL)" in output
     with h5py.File(tmp_path / "deck.vtkhdf") as file:
         assert "accuracy" not in file
 

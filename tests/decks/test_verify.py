@@ -217,7 +217,7 @@ def test_a_set_is_judged_at_its_worst_node(tmp_path):
                   tmp_path)  # fmt: skip
     assert process.returncode == 4
     worst = min(number for number, (_, y) in HIGH.items() if y == 1.0)
-    assert (f": check failed: NT UPPER, node {worst} at time 1: 100 (no estimate: inside a step; ERRORS=FULL), "
+    assert (f": check failed: NT UPPER, node {worst} at time 1: 100 (no estimate: needs ERRORS=FULL), "
             "expected") in process.stderr
     assert f"ERRORS=FULL), node {worst}\n" in (tmp_path / "set.lst").read_text()
 
@@ -269,7 +269,7 @@ def test_values_are_told_with_their_uncertainties(tmp_path, quantity, where, nam
         assert float(said) == pytest.approx(uncertainty, rel=0.06)
         assert (tmp_path / "told.lst").read_text().count(f"found:  {found} +- {said}\n") == 1 + (time > 180.0)
     if errors == "LAST":
-        assert "(no estimate: inside a step; ERRORS=FULL), expected" in failed[180.0]
+        assert "(no estimate: needs ERRORS=FULL), expected" in failed[180.0]
 
 
 def test_the_uncertainty_of_a_check_holds_the_error_of_the_increments(tmp_path):
