@@ -46,6 +46,7 @@ contains
       type(error_type), allocatable, intent(out) :: error   ! never
 
       self%order = lower%row_count
+      self%tail = tail
       self%row_start = lower%row_start
       self%column = lower%column
       if (allocated(rank)) self%rank = rank
@@ -75,7 +76,7 @@ contains
       end if
       if (.not. self%is_analysed) then
          self%direct%joined = self%joined
-         call self%direct%analyse(lower, 0, self%rank, error)
+         call self%direct%analyse(lower, self%tail, self%rank, error)
          if (allocated(error)) return
          self%is_analysed = .true.
       end if
