@@ -6,6 +6,9 @@
 !> Loads that were solved for are kept with what became of them: a load that they make up needs no
 !> solution of its own.
 !>
+!> A matrix without a tail that is another one for nearly each solution is not factored where
+!> conjugate gradients are quick.
+!>
 !> Where many interfaces join many bodies, these are reduced piece by piece (body_pieces), and what
 !> is left of them is the tail, a sparse one; else all unknowns but the contact's are eliminated:
 !> where faces slide, first those inside of the bodies, once for all places of the faces.
@@ -13,6 +16,7 @@ module field_problem
    use body_pieces, only: body_division_type, body_pieces_type
    use controls, only: solver_mumps, solver_skyline
    use errors, only: check_finite, error_type, status_deck
+   use gradient_solver, only: gradient_solver_type
    use kinds, only: dp, long
    use linear_constraints, only: linear_constraints_type
    use linear_solver, only: linear_solver_type
@@ -54,6 +58,7 @@ module field_problem
       type(linear_constraints_type) :: map                    !! u = T v + B g, and the unknowns v
       integer :: numbering = 0                                !! which numbering, counted
       type(body_division_type) :: division                    !! where bodies are reduced by pieces
+      logical :: changes = .false.   !! whether most solutions have a matrix of their own
    contains
       procedure :: matrix_of_unknowns
    end type field_problem_type
@@ -186,11 +191,7 @@ contains
          lower = problem%matrix_of_unknowns(added)
       end if
       if (.not. allocated(self%solver)) then
-         if (solver_kind == solver_mumps .and. .not. allocated(problem%division%piece)) then
-            allocate (mumps_solver_type :: self%solver)
-         else
-            allocate (skyline_solver_type :: self%solver)
-         end if
+         call choose_solver(problem, solver_kind, self%solver)
          if (allocated(node_rank) .and. .not. allocated(self%rank)) then
             self%rank = node_rank(problem%map%leading_nodes())
             self%rank(size(self%rank) - problem%map%last + 1:) = maxval(node_rank) + 1
@@ -214,6 +215,28 @@ contains
       end associate
       call self%release()
    end subroutine factor
+
+   !> A solver for a problem.
+   subroutine choose_solver(problem, solver_kind, solver)
+      type(field_problem_type), intent(in) :: problem
+      integer, intent(in) :: solver_kind                  !! solver_skyline or solver_mumps
+      class(linear_solver_type), allocatable, intent(out) :: solver
+      class(linear_solver_type), allocatable :: direct
+      type(gradient_solver_type), allocatable :: gradients
+
+      if (solver_kind == solver_mumps .and. .not. allocated(problem%division%piece)) then
+         allocate (mumps_solver_type :: direct)
+      else
+         allocate (skyline_solver_type :: direct)
+      end if
+      if (problem%changes .and. problem%map%tail == 0) then
+         allocate (gradients)
+         call move_alloc(direct, gradients%direct)
+         call move_alloc(gradients, solver)
+      else
+         call move_alloc(direct, solver)
+      end if
+   end subroutine choose_solver
 
    !> Reduces the bodies piece by piece; what is left is the tail, or kept for a solver, for all
    !> numberings of these pieces.

@@ -136,6 +136,8 @@ contains
             sliding_nodes(self%interfaces, size(model%mesh%node_number))
          self%thermal%division = self%mechanical%division
       end if
+      self%thermal%changes = any(model%steps%is_transient) .and. &
+         any(melts(model%materials(model%sections%material)))
       self%largest_expansion = maxval([(maxval(abs(model%materials(model%sections(i)%material) &
          %expansion)), i=1, size(model%sections))])
    end subroutine prepare

@@ -1,6 +1,6 @@
-!> Interface of a direct solver for a symmetric positive definite matrix whose last unknowns, the
-!> tail, are the contact's: factor the leading block once, after which only the tail is ever
-!> factored again (dense).
+!> Interface of a solver for a symmetric positive definite matrix whose last unknowns, the tail, are
+!> the contact's: factor the leading block once, after which only the tail is ever factored again
+!> (dense).
 !>
 !> A solver analyses a pattern once and factors values in that pattern as often as they change. The
 !> order of elimination is a value of its own: several solvers that hold factors of one pattern

@@ -26,7 +26,8 @@ module melting
    !> where the interval is a part of it in which temperatures change
    real(dp), parameter :: rounding = 1.0e-13_dp
 
-   integer, parameter :: sweeps = 12             !! that foresee a front
+   integer, parameter :: most_sweeps = 24        !! that foresee a front
+   integer, parameter :: quiet_sweeps = 6        !! in which no node enters or leaves an interval
    real(dp), parameter :: resting = 2.0e-5_dp    !! part of a node's latent heat that moves none
 
    !> A node of a material that melts.
@@ -110,7 +111,7 @@ contains
 
    !> Foresees T' at the end of a stage by sweeps to and fro over the equation of heat without
    !> melting, which solve the row of a node together with its latent heat (Gauss and Seidel). Nodes
-   !> whose neighbours stay rest.
+   !> whose neighbours stay rest. They end when none has entered or left an interval for some.
    pure subroutine foresee(self, model, matrix, rhs, duration, moves, temperature)
       class(melting_type), intent(inout) :: self
       type(model_type), intent(in) :: model
@@ -121,7 +122,7 @@ contains
       real(dp), intent(inout) :: temperature(:)              !! (nodes) from begin, then foreseen
       real(dp) :: held(size(rhs)), left_over, own, small(size(rhs))
       logical :: waits(size(rhs))
-      integer :: at(size(rhs)), i, k, l, sweep
+      integer :: at(size(rhs)), i, k, l, moved, within, sweep
 
       at = 0
       small = 0.0_dp
@@ -134,7 +135,9 @@ contains
          end associate
       end do
       waits = moves
-      do sweep = 1, sweeps
+      moved = 0
+      do sweep = 1, most_sweeps
+         if (sweep - moved > quiet_sweeps) exit
          do k = 1, size(rhs)
             i = merge(k, size(rhs) + 1 - k, modulo(sweep, 2) == 1)
             if (.not. waits(i)) cycle
@@ -155,7 +158,9 @@ contains
             if (at(i) == 0) cycle
             associate (node => self%nodes(at(i)))
                call melted_to(model%materials(node%material), own*duration/node%volume, &
-                  temperature(i), 0.0_dp, node%at, node%row)
+                  temperature(i), 0.0_dp, node%at, within)
+               if (within /= node%row) moved = sweep
+               node%row = within
                temperature(i) = node%at
                held(i) = left_over - own*node%at
             end associate
@@ -306,16 +311,20 @@ contains
       type(model_type), intent(in) :: model
       real(dp), intent(in) :: temperature(:)                 !! (nodes)
       real(dp) :: fraction(size(temperature))                !! (nodes) [-]
-      integer :: e, m, q
+      logical :: is_in(size(temperature))
+      integer :: e, i, m
 
       fraction = 1.0_dp
-      do e = 1, size(model%mesh%element_kind)
-         m = model%sections(model%mesh%element_section(e))%material
+      do m = 1, size(model%materials)
          if (.not. melts(model%materials(m))) cycle
-         do q = 1, element_node_count(model%mesh%element_kind(e))
-            associate (n => model%mesh%element_nodes(q, e))
-               fraction(n) = solid_fraction(model%materials(m), temperature(n))
-            end associate
+         is_in = .false.
+         do e = 1, size(model%mesh%element_kind)
+            if (model%sections(model%mesh%element_section(e))%material == m) is_in( &
+               model%mesh%element_nodes(:element_node_count(model%mesh%element_kind(e)), e)) = &
+               .true.
+         end do
+         do i = 1, size(temperature)
+            if (is_in(i)) fraction(i) = solid_fraction(model%materials(m), temperature(i))
          end do
       end do
    end function solid_fractions

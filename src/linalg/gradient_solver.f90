@@ -1,0 +1,231 @@
+!> Solver of matrices whose values change with nearly each solution, so that factors would serve but
+!> once: conjugate gradients, preconditioned by a sweep of Gauss and Seidel to and fro, at the cost
+!> of one product for both (S. C. Eisenstat, SIAM J. Sci. Stat. Comput. 2 (1981) 1). It takes few
+!> steps where heat is stored. A matrix that would need many goes to a direct solver.
+module gradient_solver
+   use errors, only: error_type
+   use kinds, only: dp, long
+   use linear_solver, only: check_pattern, linear_solver_type
+   use sparse_matrix, only: sparse_matrix_type
+   implicit none
+   private
+   public :: gradient_solver_type
+
+   ! How fast they converge is tried with a uniform load, whose solution is smooth. So many steps
+   ! would be some 60 to the end.
+   integer, parameter :: trial_steps = 8
+   real(dp), parameter :: trial_tolerance = 0.01_dp
+   integer, parameter :: most_steps = 1000
+   real(dp), parameter :: tolerance = 1.0e-15_dp   !! what is left over of a right-hand side
+
+   !> A matrix without a tail that is scaled to I + L + L^T, or the factors of another solver.
+   type, extends(linear_solver_type) :: gradient_solver_type
+      class(linear_solver_type), allocatable :: direct   !! that other solver, given at first
+      integer, allocatable, private :: rank(:)           !! (order) for it, if known
+      logical, private :: is_analysed = .false.          !! whether it is
+      logical, private :: iterates = .false.
+      real(dp), allocatable, private :: value(:)         !! (entries) L, beside a diagonal not read
+      real(dp), allocatable, private :: scaling(:)       !! (order) 1/sqrt(diagonal)
+   contains
+      procedure :: analyse
+      procedure :: factor
+      procedure :: condense
+      procedure :: recover
+      procedure :: extend
+      procedure :: release
+   end type gradient_solver_type
+
+contains
+
+   !> As analyse_interface of linear_solver says, but for the order: none is made.
+   subroutine analyse(self, lower, tail, rank, error)
+      class(gradient_solver_type), intent(inout) :: self
+      type(sparse_matrix_type), intent(in) :: lower
+      integer, intent(in) :: tail                           ! none
+      integer, allocatable, intent(inout) :: rank(:)
+      type(error_type), allocatable, intent(out) :: error   ! never
+
+      self%order = lower%row_count
+      self%tail = tail
+      self%row_start = lower%row_start
+      self%column = lower%column
+      if (allocated(rank)) self%rank = rank
+   end subroutine analyse
+
+   !> As factor_interface of linear_solver says.
+   subroutine factor(self, lower, error)
+      class(gradient_solver_type), intent(inout) :: self
+      type(sparse_matrix_type), intent(in) :: lower
+      type(error_type), allocatable, intent(out) :: error
+      logical :: is_solved
+      real(dp) :: load(self%order)
+
+      call check_pattern(self, lower, error)
+      if (allocated(error)) return
+      call scale_matrix(self, lower)
+      load = 1.0_dp
+      if (self%iterates) then
+         call iterate(self, trial_steps, trial_tolerance, load, is_solved)
+         self%iterates = is_solved
+      end if
+      self%schur = reshape([real(dp) ::], [0, 0])
+      if (self%iterates) then
+         self%factor_bytes = storage_size(1.0_dp)/8*size(self%value, kind=long)
+         self%smallest_pivot = 1.0_dp
+         return
+      end if
+      if (.not. self%is_analysed) then
+         self%direct%joined = self%joined
+         call self%direct%analyse(lower, self%tail, self%rank, error)
+         if (allocated(error)) return
+         self%is_analysed = .true.
+      end if
+      call self%direct%factor(lower, error)
+      self%full_flops = self%direct%full_flops
+      self%factor_bytes = self%direct%factor_bytes
+      self%smallest_pivot = self%direct%smallest_pivot
+      self%lost_unknown = self%direct%lost_unknown
+   end subroutine factor
+
+   !> Brings the diagonal to 1, if all of it is positive.
+   pure subroutine scale_matrix(self, lower)
+      type(gradient_solver_type), intent(inout) :: self
+      type(sparse_matrix_type), intent(in) :: lower
+      integer :: i, k
+
+      self%value = lower%value
+      self%scaling = lower%value(lower%row_start(2:) - 1)
+      self%iterates = all(self%scaling > 0.0_dp)
+      if (.not. self%iterates) return
+      self%scaling = 1.0_dp/sqrt(self%scaling)
+      do i = 1, self%order
+         do k = lower%row_start(i), lower%row_start(i + 1) - 2
+            self%value(k) = self%scaling(i)*self%value(k)*self%scaling(lower%column(k))
+         end do
+      end do
+   end subroutine scale_matrix
+
+   !> Solves for a right-hand side.
+   pure subroutine iterate(self, most, part, x, is_solved)
+      type(gradient_solver_type), intent(in) :: self
+      integer, intent(in) :: most                    ! steps
+      real(dp), intent(in) :: part                   ! of the right-hand side that may be left over
+      real(dp), intent(inout) :: x(self%order)       ! that, then the solution
+      logical, intent(out) :: is_solved
+      real(dp), dimension(self%order) :: direction, left_over, product, t
+      real(dp) :: before, length, square, least
+      integer :: step
+
+      left_over = self%scaling*x
+      call sweep_down(self%order, self%row_start, self%column, self%value, left_over)
+      direction = left_over
+      square = dot_product(left_over, left_over)
+      least = part**2*square
+      x = 0.0_dp
+      do step = 1, most
+         is_solved = square <= least
+         if (is_solved) exit
+         t = direction
+         call sweep_up(self%order, self%row_start, self%column, self%value, t)
+         product = direction - t
+         call sweep_down(self%order, self%row_start, self%column, self%value, product)
+         product = product + t
+         length = square/dot_product(direction, product)
+         x = x + length*t
+         left_over = left_over - length*product
+         before = square
+         square = dot_product(left_over, left_over)
+         direction = left_over + square/before*direction
+      end do
+      x = self%scaling*x
+   end subroutine iterate
+
+   !> (I + L)^-1 x.
+   pure subroutine sweep_down(n, row_start, column, value, x)
+      integer, intent(in) :: n, row_start(n + 1), column(*)
+      real(dp), intent(in) :: value(*)
+      real(dp), intent(inout) :: x(n)
+      real(dp) :: total
+      integer :: i, k
+
+      do i = 1, n
+         total = x(i)
+         !GCC$ unroll 4
+         do k = row_start(i), row_start(i + 1) - 2
+            total = total - value(k)*x(column(k))
+         end do
+         x(i) = total
+      end do
+   end subroutine sweep_down
+
+   !> (I + L^T)^-1 x.
+   pure subroutine sweep_up(n, row_start, column, value, x)
+      integer, intent(in) :: n, row_start(n + 1), column(*)
+      real(dp), intent(in) :: value(*)
+      real(dp), intent(inout) :: x(n)
+      real(dp) :: own
+      integer :: i, k
+
+      do i = n, 1, -1
+         own = x(i)
+         !GCC$ unroll 4
+         do k = row_start(i), row_start(i + 1) - 2
+            x(column(k)) = x(column(k)) - value(k)*own
+         end do
+      end do
+   end subroutine sweep_up
+
+   !> As condense_interface of linear_solver says.
+   subroutine condense(self, rhs, condensed, welded)
+      class(gradient_solver_type), intent(in) :: self
+      real(dp), intent(in) :: rhs(:, :)
+      real(dp), intent(out) :: condensed(:, :)
+      real(dp), intent(out), optional :: welded(:, :)
+
+      if (.not. self%iterates) then
+         call self%direct%condense(rhs, condensed, welded)
+      else if (present(welded)) then
+         call self%recover(rhs, condensed, welded)
+      end if
+   end subroutine condense
+
+   !> As recover_interface of linear_solver says.
+   subroutine recover(self, rhs, on_tail, solution)
+      class(gradient_solver_type), intent(in) :: self
+      real(dp), intent(in) :: rhs(:, :)
+      real(dp), intent(in) :: on_tail(:, :)
+      real(dp), intent(out) :: solution(:, :)
+      logical :: is_solved
+      integer :: k
+
+      if (.not. self%iterates) then
+         call self%direct%recover(rhs, on_tail, solution)
+         return
+      end if
+      ! What is left over behind so many steps, the balance of heat would show.
+      solution = rhs
+      do k = 1, size(rhs, 2)
+         call iterate(self, most_steps, tolerance, solution(:, k), is_solved)
+      end do
+   end subroutine recover
+
+   !> As extend_interface of linear_solver says.
+   subroutine extend(self, on_tail, solution)
+      class(gradient_solver_type), intent(in) :: self
+      real(dp), intent(in) :: on_tail(:, :)
+      real(dp), intent(out) :: solution(:, :)
+
+      solution = 0.0_dp
+      if (.not. self%iterates) call self%direct%extend(on_tail, solution)
+   end subroutine extend
+
+   !> As release_interface of linear_solver says.
+   subroutine release(self)
+      class(gradient_solver_type), intent(inout) :: self
+
+      self%iterates = .false.
+      if (self%is_analysed) call self%direct%release()
+      self%is_analysed = .false.
+   end subroutine release
+
+end module gradient_solver
