@@ -76,8 +76,8 @@ contains
          has_sparse_tail(model, points))
       if (any(model%steps%stability_frequency > 0) .and. any(heat_capacity(model%materials) > &
          0.0_dp)) bytes = bytes + real_bytes*motion_responses*nodes*points
-      if (makes_friction_heat(model%interactions, model%contacts)) bytes = bytes + &
-         real_bytes*friction_responses*nodes*points
+      if (makes_friction_heat(model%interactions, model%contacts) .and. .not. &
+         has_sparse_tail(model, points)) bytes = bytes + real_bytes*friction_responses*nodes*points
       ! The finer mesh has room for both fields.
       has_finer_mesh = model%uncertainty == uncertainty_last
       if (has_finer_mesh) bytes = bytes + finer*per_fine_entry*entries_of(kinds, .true., .true.)* &

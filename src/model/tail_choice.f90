@@ -2,7 +2,6 @@
 !> a whole, or sparsely, beside the faces of bodies that are reduced in pieces. The full matrix
 !> costs less where it is small.
 module tail_choice
-   use contact_definitions, only: makes_friction_heat
    use controls, only: start_both, tail_by_size, tail_sparse
    use kinds, only: dp
    use model, only: model_type
@@ -35,7 +34,6 @@ contains
       if (any(model%steps%dilates)) what = 'DILATATION=YES'
       if (any(model%steps%stability_frequency > 0)) what = '*STABILITY'
       if (any(model%steps%continuation%is_on)) what = '*CONTINUATION'
-      if (makes_friction_heat(model%interactions, model%contacts)) what = 'heat of friction'
    end function needs_full_tail
 
 end module tail_choice
