@@ -78,7 +78,7 @@ contains
    end function serves
 
    !> Whether loads of jumps are formed as they are asked for: where the caller says so, and where
-   !> bodies are divided, unless heat of friction asks for the loads of all jumps.
+   !> bodies are divided, unless heat of friction asks for the loads of all jumps of a full tail.
    pure logical function is_on_demand(self, bodies)
       class(heat_reduction_type), intent(in) :: self
       type(reduced_bodies_type), intent(in) :: bodies

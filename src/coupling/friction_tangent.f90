@@ -40,6 +40,20 @@ module friction_tangent
 
 contains
 
+   !> Changes of the heats by those of the condensed load.
+   function by_load(self, bodies, workspace, load) result(change)
+      class(friction_tangent_type), intent(in) :: self
+      type(reduced_bodies_type), intent(in) :: bodies
+      type(increment_workspace_type), intent(in) :: workspace
+      real(dp), intent(in) :: load(:, :)                         ! (mechanical tail, columns)
+      real(dp) :: change(size(workspace%friction%heat), size(load, 2))   ! (n, columns)
+      type(contact_change_type) :: of_contact
+
+      call contact_response(bodies%equilibrium%contact, self%contact, self%state, load, &
+         of_contact, with_slip=.true.)
+      change = workspace%friction%changes(bodies, self%state, of_contact)
+   end function by_load
+
    !> The derivative at the state that the last pass found.
    subroutine make(self, bodies, heat, workspace, state)
       class(friction_tangent_type), intent(inout) :: self
@@ -132,20 +146,6 @@ contains
       call workspace%tail%solve_columns(of_tail)
       load = heat%loads_of_tail(bodies, of_tail)
    end subroutine find_loads
-
-   !> Changes of the heats by those of the condensed load.
-   function by_load(self, bodies, workspace, load) result(change)
-      class(friction_tangent_type), intent(in) :: self
-      type(reduced_bodies_type), intent(in) :: bodies
-      type(increment_workspace_type), intent(in) :: workspace
-      real(dp), intent(in) :: load(:, :)                         ! (mechanical tail, columns)
-      real(dp) :: change(size(workspace%friction%heat), size(load, 2))   ! (n, columns)
-      type(contact_change_type) :: of_contact
-
-      call contact_response(bodies%equilibrium%contact, self%contact, self%state, load, &
-         of_contact, with_slip=.true.)
-      change = workspace%friction%changes(bodies, self%state, of_contact)
-   end function by_load
 
    !> Adds to changes at constant heat what the heat makes that follows them.
    subroutine follow(self, bodies, heat, workspace, of_tail, load, friction_heat)

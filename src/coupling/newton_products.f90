@@ -160,8 +160,8 @@ contains
       where (body <= 0.0_dp) body = 1.0_dp
    end subroutine find_own
 
-   !> What heats at the contact points make of the thermal tail while the heat of friction stays, and
-   !> of the openings where it follows.
+   !> What heats at the contact points make of the thermal tail while the heat of friction stays,
+   !> and of the openings where it follows.
    subroutine find_changes(bodies, heat, trial, tangent, heats, of_tail, of_opening)
       type(reduced_bodies_type), intent(in) :: bodies
       type(heat_reduction_type), intent(in) :: heat

@@ -50,8 +50,11 @@ def rod(pellets, tail=None, kind="CAX4", expansion=1e-5, friction=0.1, counts=(4
     period = 0.3 if "rubbing" in kind else 1.0
     step = ["*COUPLED TEMPERATURE-DISPLACEMENT, STEADY STATE, DIRECT", f"{period / 4}, {period}"]
     if "transient" in kind:
-        step = ["*COUPLED TEMPERATURE-DISPLACEMENT, DIRECT", "25., 100."]
-    return ["*OPTIONS, ERRORS=NO", *cards, "*FIXED POINT, TOL=1E-12",
+        strains = ", DILATATION=YES" if "dilating" in kind else ""
+        step = [f"*COUPLED TEMPERATURE-DISPLACEMENT, DIRECT{strains}", "25., 100.", "*STABILITY"]
+    # So near that strains take up a tenth of the heat that is stored.
+    zero = ["*PHYSICAL CONSTANTS, ABSOLUTE ZERO=-10."] if "dilating" in kind else []
+    return ["*OPTIONS, ERRORS=NO", *zero, *cards, "*FIXED POINT, TOL=1E-12",
             "*INITIAL CONDITIONS, TYPE=TEMPERATURE", *[f"{n}, 0." for n in (*names, "TUBE")],
             "*BOUNDARY", "TUBE.BOTTOM, 2", "P0.BOTTOM, 2", *[f"{n}.LEFT, 1" for n in names],
             "*STEP", *step, "*DFLUX", *[f"{n}, BF, {POWER}" for n in names],
