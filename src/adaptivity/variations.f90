@@ -208,13 +208,11 @@ contains
    subroutine allow_memory(model, error)
       type(model_type), intent(in) :: model
       type(error_type), allocatable, intent(out) :: error
-      character(:), allocatable :: what
 
       call check_memory(model%memory_needed, error)
       if (.not. allocated(error) .or. model%mesh%body_count <= 2) return
-      what = needs_full_tail(model)
-      if (len(what) > 0) error%message = error%message//'; '//what//' needs derivatives '// &
-         'between all contact points, and with them a full matrix'
+      if (needs_full_tail(model)) error%message = error%message//'; *CONTINUATION needs '// &
+         'derivatives between all contact points, and with them a full matrix'
    end subroutine allow_memory
 
    !> Makes the elements of a model linear ones, as ORDER=1 asks.

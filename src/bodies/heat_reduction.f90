@@ -29,7 +29,8 @@ module heat_reduction
       !> Of unit heat at each of the n contact points that friction may heat: (thermal tail, n)
       !> condensed heat; (mechanical tail, n) condensed mechanical load of the temperatures that it
       !> makes without jumps; (m, n) mean temperature of the faces, formed where laws vary with it.
-      !> Formed where heat depends on the mechanics of the step
+      !> Formed where heat depends on the mechanics of the step; not for a sparse tail, which the
+      !> heat enters as it is, and without which it makes nothing
       real(dp), allocatable :: friction_heat(:, :), friction_load(:, :), friction_mean(:, :)
       !> (nodes) ranks in nested dissection of both fields as numbered; known where one elimination
       !> of both was made
@@ -59,6 +60,7 @@ module heat_reduction
       procedure :: has_tail_forces
       procedure :: tail_forces
       procedure :: means_of_tail
+      procedure :: friction_on_tail
       procedure :: conductors
    end type heat_reduction_type
 
@@ -76,7 +78,7 @@ contains
    end function serves
 
    !> Whether loads of jumps are formed as they are asked for: where the caller says so, and where
-   !> bodies are divided, unless heat of friction asks for the loads of all jumps.
+   !> bodies are divided, unless heat of friction asks for the loads of all jumps of a full tail.
    pure logical function is_on_demand(self, bodies)
       class(heat_reduction_type), intent(in) :: self
       type(reduced_bodies_type), intent(in) :: bodies
@@ -298,6 +300,23 @@ contains
             i=1, bodies%thermal%matrix%row_count)]))
       end do
    end function means_of_tail
+
+   !> Condensed heat of the contact points that friction heats.
+   function friction_on_tail(self, bodies, heat) result(on_tail)
+      class(heat_reduction_type), intent(in) :: self
+      type(reduced_bodies_type), intent(in) :: bodies
+      real(dp), intent(in) :: heat(:)                     !! (n) [power]
+      real(dp) :: on_tail(bodies%thermal%map%tail)        !! (thermal tail) [power]
+      real(dp) :: nodal(bodies%thermal%matrix%row_count)
+
+      if (self%schur%is_sparse()) then
+         nodal = 0.0_dp
+         call bodies%points%heat_shares%add_shares(heat, nodal)
+         on_tail = bodies%thermal%map%restrict(nodal)
+      else
+         on_tail = matmul(self%friction_heat, heat)
+      end if
+   end function friction_on_tail
 
    !> Forces on the degrees of freedom that pieces of the bodies keep, of a unit temperature of each
    !> node that they keep and that is not prescribed: the same for all places of faces that slide,

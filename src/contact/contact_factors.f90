@@ -44,6 +44,7 @@ module contact_factors
       procedure :: factor
       procedure :: solve
       procedure :: solve_part
+      procedure :: solve_transposed
       procedure :: is_negative
    end type contact_factors_type
 
@@ -271,6 +272,14 @@ contains
          part(i, :) = merge(x(rows(i), :), 0.0_dp, is_free(rows(i)))
       end do
    end function solve_part
+
+   !> The transposed of solve, on a sparse tail.
+   pure subroutine solve_transposed(self, x)
+      class(contact_factors_type), intent(in) :: self
+      real(dp), intent(inout) :: x(:)   !! (tail) as contact_fronts has it
+
+      call self%fronts%solve_transposed(x)
+   end subroutine solve_transposed
 
    !> Whether the determinant of the free rows, with their border, is negative.
    pure logical function is_negative(self)

@@ -32,6 +32,7 @@ module contact_fronts
       procedure :: factor
       procedure :: solve
       procedure :: solve_part
+      procedure :: solve_transposed
       procedure :: is_negative
    end type contact_fronts_type
 
@@ -200,6 +201,21 @@ contains
 
       part = self%fronts%solve_part(rows, spread(self%scale(rows), 2, size(forces, 2))*forces)
    end function solve_part
+
+   !> Sums of forces as they enter the rows, from sums of the displacements that take these up.
+   pure subroutine solve_transposed(self, x)
+      class(contact_fronts_type), intent(in) :: self
+      !> (tail) factors of displacements in the free rows in; those of forces there out
+      real(dp), intent(inout) :: x(:)
+      real(dp) :: bordered(size(x) + self%border%count)
+
+      bordered = 0.0_dp
+      associate (free => self%rows%free)
+         bordered(free) = x(free)
+         call self%fronts%solve_transposed(bordered)
+         x(free) = self%scale(free)*bordered(free)
+      end associate
+   end subroutine solve_transposed
 
    !> Whether the determinant of the free rows, with their border, is negative.
    pure logical function is_negative(self)

@@ -67,6 +67,7 @@ module contact_workspace
       procedure :: another
       procedure :: solve_set
       procedure :: solve_free
+      procedure :: solve_transposed
       procedure :: stiffness
       procedure :: turns_back
       procedure :: slip
@@ -397,6 +398,22 @@ contains
       call self%factors%solve(of_rows, unbalanced)
       x(self%rows%free, :) = of_rows(self%rows%free, :)
    end subroutine solve_free
+
+   !> Sums of the forces, from sums of the free displacements that take them up: the transposed of
+   !> solve_free, on a sparse tail.
+   pure subroutine solve_transposed(self, x)
+      class(contact_workspace_type), intent(in) :: self  !! factors
+      real(dp), intent(inout) :: x(:) !! (tail) factors of displacements in, those of forces out
+      real(dp) :: in_rows(size(x))
+      type(sum_list_type) :: forces
+
+      in_rows = 0.0_dp
+      in_rows(self%rows%free) = x(self%rows%free)
+      call self%factors%solve_transposed(in_rows)
+      forces = self%rows%forces()
+      x = 0.0_dp
+      call forces%add_shares(in_rows, x)
+   end subroutine solve_transposed
 
    !> Forces at some rows of the tail for unit displacements there, the free ones following; with
    !> the factors of the last active set. Source: (2.4), statically condensed.

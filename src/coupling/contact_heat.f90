@@ -14,6 +14,7 @@ module contact_heat
    use conductance_laws, only: conductance
    use dense, only: lu_type, product_of
    use errors, only: check_finite, error_type, set_error, status_no_convergence
+   use friction_tangent, only: friction_tangent_type
    use gmres, only: gmres_type
    use heat_equation, only: heat_across
    use heat_reduction, only: heat_reduction_type
@@ -67,7 +68,7 @@ contains
          of_point = data%equation%contact_diagonal(omega)
          history = data%equation%contact_history(omega)
          x = data%heat%condensed
-         if (allocated(workspace%friction%heat)) x = x + matmul(heat%friction_heat, &
+         if (allocated(workspace%friction%heat)) x = x + heat%friction_on_tail(bodies, &
             workspace%friction%parts(2, :)*workspace%friction%heat)
          diagonal = 0.0_dp
          do k = 1, size(omega)
@@ -192,22 +193,30 @@ contains
    end function tail_of_heats
 
    !> Changes of the conductances with the laws' own changes dW: domega = dW + (dW/domega) domega.
-   function with_temperatures(bodies, heat, workspace, coordinate, rate, change) result(of_omega)
+   function with_temperatures(bodies, heat, workspace, coordinate, rate, change, friction) &
+      result(of_omega)
       type(reduced_bodies_type), intent(in) :: bodies
       type(heat_reduction_type), intent(in) :: heat
       type(increment_workspace_type), intent(in) :: workspace  !! as the last pass left it
       real(dp), intent(in) :: coordinate(:)                    !! (m) z [length]
       real(dp), intent(in) :: rate(:)                          !! (m) as from heat_by_omega
       real(dp), intent(in) :: change(:)                        !! (m) dW
+      !> of heat that follows; absent where it stays
+      type(friction_tangent_type), intent(in), optional :: friction
       real(dp) :: of_omega(size(change)), part(size(change), 1)
+      real(dp), allocatable :: load(:, :), of_tail(:, :)
       type(gmres_type) :: gmres
 
       of_omega = change
       if (.not. bodies%points%vary_with_temperature()) return
       call gmres%begin(change, solved, min(size(change), most_products))
       do while (gmres%wants_product)
-         part = changes_by_temperature(bodies, heat, workspace, coordinate, tail_of_heats(bodies, &
-            workspace, rate*gmres%vector))
+         of_tail = tail_of_heats(bodies, workspace, rate*gmres%vector)
+         if (present(friction)) then
+            load = heat%loads_of_tail(bodies, of_tail)
+            call friction%follow(bodies, heat, workspace, of_tail, load)
+         end if
+         part = changes_by_temperature(bodies, heat, workspace, coordinate, of_tail)
          call gmres%take(gmres%vector - part(:, 1))
       end do
       of_omega = gmres%solution()
@@ -237,8 +246,10 @@ contains
                   heat%jump_mean(:, bodies%jump_index(k))*jump(k)
             end do
          end if
-         if (allocated(workspace%friction%heat)) faces%mean = faces%mean + &
-            matmul(heat%friction_mean, workspace%friction%parts(2, :)*workspace%friction%heat)
+         if (allocated(workspace%friction%heat) .and. .not. heat%schur%is_sparse()) then
+            faces%mean = faces%mean + matmul(heat%friction_mean, &
+               workspace%friction%parts(2, :)*workspace%friction%heat)
+         end if
          workspace%pass%graph%law = bodies%laws%conductance_at(faces%mean, faces%jump)
       end associate
    end subroutine take_temperatures
@@ -368,8 +379,8 @@ contains
       integer :: k
 
       change = heat%means_of_tail(bodies, of_tail)
-      if (present(friction_heat)) change = change + product_of(heat%friction_mean, &
-         workspace%friction%entering_part(friction_heat))
+      if (present(friction_heat) .and. .not. heat%schur%is_sparse()) change = change + &
+         product_of(heat%friction_mean, workspace%friction%entering_part(friction_heat))
       if (present(mean)) change = change + spread(mean, 2, size(change, 2))
       jump = 0.0_dp
       do k = 1, size(coordinate)

@@ -98,8 +98,8 @@ contains
          [size(workspace%on_tail), 1])))
          load = data%no_jump_load + of_tail(:, 1)
       end associate
-      if (allocated(workspace%friction%heat)) load = load + matmul(heat%friction_load, &
-         workspace%friction%parts(2, :)*workspace%friction%heat)
+      if (allocated(workspace%friction%heat) .and. .not. heat%schur%is_sparse()) load = load + &
+         matmul(heat%friction_load, workspace%friction%parts(2, :)*workspace%friction%heat)
       call solve_increment(bodies%equilibrium%contact, data%previous, load, workspace%contact, &
          workspace%sticking, state, error)
    end subroutine find_contact
@@ -173,7 +173,7 @@ contains
       call tangent%make(bodies, heat, workspace, state)
       if (.not. tangent%exists) return
       change = reshape(rest(tangent%active), [size(tangent%active), 1])
-      call tangent%lu%solve(change)
+      call tangent%solve(bodies, heat, workspace, change)
       step(tangent%active) = change(:, 1)
    end function friction_step
 
@@ -407,16 +407,12 @@ contains
       real(dp), intent(inout) :: load(:, :)             ! (mechanical tail, n)
       logical, intent(out) :: exists                    ! whether the heat has a derivative
       type(friction_tangent_type) :: of_heat
-      type(contact_change_type) :: change
 
       call of_heat%make(bodies, heat, workspace, state)
       exists = of_heat%exists
       if (.not. exists) return
-      call contact_response(bodies%equilibrium%contact, of_heat%contact, state, load, change, &
-         with_slip=.true.)
       allocate (by_omega%friction_heat(size(workspace%friction%heat), size(load, 2)))
-      call of_heat%follow(workspace%friction%changes(bodies, state, change), by_omega%of_tail, &
-         load, by_omega%friction_heat)
+      call of_heat%follow(bodies, heat, workspace, by_omega%of_tail, load, by_omega%friction_heat)
    end subroutine follow_friction
 
    !> Changes of the openings with the condensed mechanical load.

@@ -381,9 +381,8 @@ contains
          slope = graph%derivative(coordinate)
          rate = heat_by_omega(bodies, data, workspace, solution%jump)
          scale = sqrt(of_largest(slope)/of_largest(rate))
-         heat_scale = max(maxval(abs(rate)), tiny(1.0_dp)**0.25_dp)
          allocate (of_tail(bodies%thermal%map%tail, 1), change(size(rate), 1))
-         if (size(heated) > 0) allocate (friction_heat(size(workspace%friction%heat), 1))
+         if (size(heated) > 0) call find_heat_scale()
          call gains%begin(size(free) + size(heated), no_gain, &
             enough=merge(known_of_many, 0.0_dp, heat%schur%is_sparse() .and. &
             .not. bodies%points%vary_with_temperature()))
@@ -394,7 +393,9 @@ contains
                   gains%vector(k)
             end do
             if (size(heated) > 0) then
-               call take_heated_product()
+               call find_heated_product(gains%vector(size(free) + 1:))
+               call gains%take([change(free, 1)/scale(free), &
+                  friction_heat(heated, 1)/heat_scale])
                cycle
             end if
             call workspace%tail%solve_columns(of_tail)
@@ -407,26 +408,49 @@ contains
          end do
       end associate
    contains
+      !> Heats that change conductances as much as conductances change heats.
+      subroutine find_heat_scale()
+         real(dp) :: by_heat, by_omega
+
+         allocate (friction_heat(size(workspace%friction%heat), 1))
+         heat_scale = 1.0_dp
+         of_tail = 0.0_dp
+         call find_heated_product([(1.0_dp, k=1, size(heated))])
+         by_heat = norm2(change(free, 1)/scale(free))
+         do k = 1, size(free)
+            if (bodies%jump_index(free(k)) > 0) of_tail(bodies%jump_index(free(k)), 1) = &
+               rate(free(k))*scale(free(k))
+         end do
+         call find_heated_product([(0.0_dp, k=1, size(heated))])
+         by_omega = norm2(friction_heat(heated, 1))
+         if (min(by_heat, by_omega) > 0.0_dp) heat_scale = sqrt(by_omega/by_heat)
+      end subroutine find_heat_scale
+
       !> The same with heats of friction behind the conductances.
-      subroutine take_heated_product()
-         real(dp), allocatable :: entering(:, :)
+      subroutine find_heated_product(vector)
+         real(dp), intent(in) :: vector(:)            ! (heated)
+         real(dp), allocatable :: entering(:, :), load(:, :)
 
          associate (friction => workspace%friction)
             friction_heat = 0.0_dp
-            friction_heat(heated, 1) = heat_scale*gains%vector(size(free) + 1:)
+            friction_heat(heated, 1) = heat_scale*vector
             entering = friction%entering_part(friction_heat)
-            of_tail = of_tail + product_of(heat%friction_heat, entering)
+            if (heat%schur%is_sparse()) then
+               of_tail(:, 1) = of_tail(:, 1) + heat%friction_on_tail(bodies, entering(:, 1))
+            else
+               of_tail = of_tail + product_of(heat%friction_heat, entering)
+            end if
             call workspace%tail%solve_columns(of_tail)
-            call opening_changes(bodies, workspace%pass%graph, tangent, solution%contact, &
-               heat%loads_of_tail(bodies, of_tail) + product_of(heat%friction_load, entering), &
+            load = heat%loads_of_tail(bodies, of_tail)
+            if (.not. heat%schur%is_sparse()) load = load + product_of(heat%friction_load, entering)
+            call opening_changes(bodies, workspace%pass%graph, tangent, solution%contact, load, &
                change, of_contact)
             change(:, 1) = slope*change(:, 1)
             if (bodies%points%vary_with_temperature()) change = change + &
                changes_by_temperature(bodies, heat, workspace, coordinate, of_tail, friction_heat)
             friction_heat = friction%changes(bodies, solution%contact, of_contact)
          end associate
-         call gains%take([change(free, 1)/scale(free), friction_heat(heated, 1)/heat_scale])
-      end subroutine take_heated_product
+      end subroutine find_heated_product
    end subroutine find_gains
 
    !> Moduli in the largest one, none of them 0.

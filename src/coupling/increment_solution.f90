@@ -446,9 +446,10 @@ contains
          end do
          on_tail(contact%link) = next%contact%link
          next%displacement = bodies%equilibrium%recover_kept(bodies%mechanical, data%force, on_tail)
-         if ((data%is_corrected .or. .not. allocated(bodies%faces_at)) .and. &
-            allocated(data%force%forces)) call bodies%equilibrium%pieces%fill( &
-            next%displacement, data%force%forces)
+         ! A sparse tail keeps of faces that slide what touches now, not what comes to touch.
+         if ((data%is_corrected .or. .not. allocated(bodies%faces_at) .or. &
+            bodies%mechanical%division%is_tail()) .and. allocated(data%force%forces)) &
+            call bodies%equilibrium%pieces%fill(next%displacement, data%force%forces)
          next%stress_temperature = next%temperature
          call remember_slip(bodies, workspace%contact, before, next)
       end associate

@@ -3,15 +3,17 @@
 !>    (M/tau + J) dz = -r,    J = diag(opening') - D (I - K)^-1 diag(omega'),
 !>
 !> by GMRES from products with J, each a solution on the thermal tail and one of the contact system.
-!> K is the derivative of the conductances by each other by way of the temperatures. The equations
-!> are divided by the contact points' own derivatives. These are found several at a time, of points
-!> that are far from each other, and so but nearly.
+!> K is the derivative of the conductances by each other by way of the temperatures; the heat of
+!> friction follows (friction_tangent). The equations are divided by the contact points' own
+!> derivatives. These are found several at a time, of points that are far from each other, and so
+!> but nearly.
 module newton_products
    use arnoldi, only: arnoldi_type
    use closing_instant, only: make_tangent
    use contact_heat, only: heat_by_omega, tail_of_heats, with_temperatures
    use contact_operator, only: opening_changes
    use contact_workspace, only: contact_workspace_type
+   use friction_tangent, only: friction_tangent_type
    use gmres, only: gmres_type
    use heat_reduction, only: heat_reduction_type
    use increment_data, only: trial_type
@@ -33,6 +35,7 @@ module newton_products
       type(contact_workspace_type) :: contact     !! factors
       real(dp), allocatable :: coordinate(:)      !! (m) z [length]
       real(dp), allocatable :: rate(:)            !! (m) load of the thermal tail per omega
+      type(friction_tangent_type), allocatable :: friction   !! where it makes heat
    end type opening_tangent_type
 
 contains
@@ -50,6 +53,11 @@ contains
 
       call make_tangent(bodies%equilibrium%contact, trial%workspace%contact, trial%next%contact, &
          tangent%contact, sound)
+      if (sound .and. allocated(trial%workspace%friction%heat)) then
+         allocate (tangent%friction)
+         call tangent%friction%make(bodies, heat, trial%workspace, trial%next%contact)
+         sound = tangent%friction%exists
+      end if
       if (.not. sound) return
       associate (pass => trial%workspace%pass)
          tangent%coordinate = pass%coordinates()
@@ -84,13 +92,11 @@ contains
       function by_jacobian(change) result(product)
          real(dp), intent(in) :: change(:)
          real(dp) :: product(size(change)), of_opening(size(change), 1)
+         real(dp), allocatable :: of_tail(:, :)
 
-         associate (workspace => trial%workspace)
-            call opening_changes(bodies, workspace%pass%graph, tangent%contact, &
-               trial%next%contact, heat%loads_of_tail(bodies, tail_of_heats(bodies, workspace, &
-               tangent%rate*with_temperatures(bodies, heat, workspace, tangent%coordinate, &
-               tangent%rate, slope*change))), of_opening)
-         end associate
+         call find_changes(bodies, heat, trial, tangent, tangent%rate*with_temperatures(bodies, &
+            heat, trial%workspace, tangent%coordinate, tangent%rate, slope*change, &
+            tangent%friction), of_tail, of_opening)
          product = merge(change, advance*change - of_opening(:, 1), is_left)
       end function by_jacobian
 
@@ -139,9 +145,8 @@ contains
                start(i + 1) - 1)]
          end do
          do i = 0, maxval(place)
-            of_tail = tail_of_heats(bodies, workspace, merge(tangent%rate, 0.0_dp, place == i))
-            call opening_changes(bodies, workspace%pass%graph, tangent%contact, &
-               trial%next%contact, heat%loads_of_tail(bodies, of_tail), change)
+            call find_changes(bodies, heat, trial, tangent, merge(tangent%rate, 0.0_dp, &
+               place == i), of_tail, change)
             do k = 1, size(place)
                if (place(k) /= i .or. abs(tangent%rate(k)) <= 0.0_dp) cycle
                own(k) = change(k, 1)
@@ -154,5 +159,27 @@ contains
       end associate
       where (body <= 0.0_dp) body = 1.0_dp
    end subroutine find_own
+
+   !> What heats at the contact points make of the thermal tail while the heat of friction stays,
+   !> and of the openings where it follows.
+   subroutine find_changes(bodies, heat, trial, tangent, heats, of_tail, of_opening)
+      type(reduced_bodies_type), intent(in) :: bodies
+      type(heat_reduction_type), intent(in) :: heat
+      type(trial_type), intent(in) :: trial
+      type(opening_tangent_type), intent(in) :: tangent
+      real(dp), intent(in) :: heats(:)                         ! (m)
+      real(dp), allocatable, intent(out) :: of_tail(:, :)      ! (thermal tail, 1)
+      real(dp), intent(out) :: of_opening(:, :)                ! (m, 1)
+      real(dp), allocatable :: load(:, :), with_friction(:, :)
+
+      of_tail = tail_of_heats(bodies, trial%workspace, heats)
+      load = heat%loads_of_tail(bodies, of_tail)
+      if (allocated(tangent%friction)) then
+         with_friction = of_tail
+         call tangent%friction%follow(bodies, heat, trial%workspace, with_friction, load)
+      end if
+      call opening_changes(bodies, trial%workspace%pass%graph, tangent%contact, &
+         trial%next%contact, load, of_opening)
+   end subroutine find_changes
 
 end module newton_products

@@ -49,6 +49,7 @@ module front_factors
       procedure :: factor
       procedure :: solve
       procedure :: solve_part
+      procedure :: solve_transposed
       procedure :: negative_determinant
    end type front_factors_type
 
@@ -366,6 +367,39 @@ contains
       end do
       part = solution(place(rows), :)
    end function solve_part
+
+   !> Solves with the transposed of the matrix, U^T and then L^T.
+   pure subroutine solve_transposed(self, x)
+      class(front_factors_type), intent(in) :: self
+      real(dp), intent(inout) :: x(:)            !! (unknowns) right-hand side in, solution out
+      integer :: f, k
+      real(dp) :: solution(size(x))
+      real(dp), allocatable :: own(:)
+
+      solution = 0.0_dp
+      do f = 1, size(self%front)
+         associate (front => self%front(f), p => self%front(f)%pivots)
+            if (p == 0) cycle
+            own = x(front%column)
+            do k = 1, p
+               own(k) = own(k)/front%matrix(k, k)
+               own(k + 1:) = own(k + 1:) - own(k)*front%matrix(k, k + 1:)
+            end do
+            x(front%column(p + 1:)) = own(p + 1:)
+            solution(front%row(:p)) = own(:p)
+         end associate
+      end do
+      do f = size(self%front), 1, -1
+         associate (front => self%front(f), p => self%front(f)%pivots)
+            own = solution(front%row)
+            do k = p, 1, -1
+               own(k) = own(k) - dot_product(front%matrix(k + 1:, k), own(k + 1:))
+            end do
+            solution(front%row(:p)) = own(:p)
+         end associate
+      end do
+      x = solution
+   end subroutine solve_transposed
 
    !> L^-1 of a front.
    pure subroutine eliminate_forward(front, row, column, x, solution)

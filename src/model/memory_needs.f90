@@ -32,6 +32,7 @@ module memory_needs
    !> Numbers of a node and contact point: of responses at the rates of *STABILITY, and to heat of
    !> friction.
    real(dp), parameter :: motion_responses = 13.0_dp, friction_responses = 3.0_dp
+   real(dp), parameter :: motion_products = 250.0_dp   !! of a node, on a sparse tail
 
 contains
 
@@ -75,9 +76,10 @@ contains
          merge(bytes_per_point*points, dense_matrices*real_bytes*(3*points)**2, &
          has_sparse_tail(model, points))
       if (any(model%steps%stability_frequency > 0) .and. any(heat_capacity(model%materials) > &
-         0.0_dp)) bytes = bytes + real_bytes*motion_responses*nodes*points
-      if (makes_friction_heat(model%interactions, model%contacts)) bytes = bytes + &
-         real_bytes*friction_responses*nodes*points
+         0.0_dp)) bytes = bytes + real_bytes*nodes*merge(motion_products, &
+         motion_responses*points, has_sparse_tail(model, points))
+      if (makes_friction_heat(model%interactions, model%contacts) .and. .not. &
+         has_sparse_tail(model, points)) bytes = bytes + real_bytes*friction_responses*nodes*points
       ! The finer mesh has room for both fields.
       has_finer_mesh = model%uncertainty == uncertainty_last
       if (has_finer_mesh) bytes = bytes + finer*per_fine_entry*entries_of(kinds, .true., .true.)* &

@@ -2,8 +2,7 @@
 !> a whole, or sparsely, beside the faces of bodies that are reduced in pieces. The full matrix
 !> costs less where it is small.
 module tail_choice
-   use contact_definitions, only: makes_friction_heat
-   use controls, only: start_both, tail_by_size, tail_sparse
+   use controls, only: tail_by_size, tail_sparse
    use kinds, only: dp
    use model, only: model_type
    implicit none
@@ -21,21 +20,14 @@ contains
 
       has_sparse_tail = model%tail == tail_sparse .or. (model%tail == tail_by_size .and. &
          model%mesh%body_count > 2 .and. points > most_at_once)
-      has_sparse_tail = has_sparse_tail .and. points > 0.0_dp .and. len(needs_full_tail(model)) == 0
+      has_sparse_tail = has_sparse_tail .and. points > 0.0_dp .and. .not. needs_full_tail(model)
    end function has_sparse_tail
 
-   !> What of a deck needs derivatives between all contact points, and with them the full matrix;
-   !> empty for nothing.
-   pure function needs_full_tail(model) result(what)
+   !> Whether a deck needs derivatives between all contact points, and with them the full matrix.
+   pure logical function needs_full_tail(model)
       type(model_type), intent(in) :: model
-      character(:), allocatable :: what
 
-      what = ''
-      if (any(model%steps%start%kind == start_both)) what = '*START, FROM=BOTH'
-      if (any(model%steps%dilates)) what = 'DILATATION=YES'
-      if (any(model%steps%stability_frequency > 0)) what = '*STABILITY'
-      if (any(model%steps%continuation%is_on)) what = '*CONTINUATION'
-      if (makes_friction_heat(model%interactions, model%contacts)) what = 'heat of friction'
+      needs_full_tail = any(model%steps%continuation%is_on)
    end function needs_full_tail
 
 end module tail_choice

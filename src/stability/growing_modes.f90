@@ -4,22 +4,17 @@
 !> The number is that of the bodies projected on their responses at rates from a tenth of the
 !> slowest conduction on, up to one beyond which the bound of the gain says that nothing grows, and,
 !> where some grow or swing with little decay, once more above the fastest of these. That is found
-!> on the bodies themselves, where the growing ones are counted again: the one checks the other. It
-!> grows fastest, or decays slowest; Arnoldi's method finds it on
+!> on the bodies themselves (leading_modes), where the growing ones are counted again: the one
+!> checks the other.
 !>
-!>    (A - F N + sigma (C - F N'))^-1 (C - F N'),
-!>
-!> N' being what N has more at unit rate. Its eigenvalues are 1/(sigma - s). A product with T is
-!>
-!>    z + W y,   z = (A + sigma C)^-1 C T,   (I - N W) y = N z - N' T,   W = (A + sigma C)^-1 F,
-!>
-!> N taken at the rate sigma.
+!> On a sparse tail the bodies are not projected. Where the bound of the gain does not say that
+!> nothing grows at all, motions that grow are sought on the bodies alone, at rates up to the one
+!> beyond which it does, and nothing proves that those that are found are all.
 module growing_modes
-   use arnoldi, only: arnoldi_type
-   use dense, only: lu_type, product_of, transposed_product
    use due_output, only: is_nth
    use errors, only: error_type
    use kinds, only: dp
+   use leading_modes, only: leading_modes_type
    use materials, only: heat_capacity
    use model, only: follows_temperatures, model_type
    use motion_responses, only: motion_response_type
@@ -40,9 +35,6 @@ module growing_modes
    real(dp), parameter :: above = 1.5_dp       !! the fastest rate: where it is sought
    real(dp), parameter :: light = 0.5_dp       !! decay in a modulus, below which it may be growth
    real(dp), parameter :: neutral_part = 1.0e-8_dp   !! of the slowest conduction that is no growth
-   integer, parameter :: most_products = 80
-   real(dp), parameter :: sharp = 1.0e-8_dp    !! residual of an eigenvalue, relative
-   real(dp), parameter :: nothing = 1.0e-6_dp  !! of the largest one, that is none
    real(dp), parameter :: alike = 0.05_dp      !! relative difference of both fastest rates
    real(dp), parameter :: nearly_real = 1.0e-6_dp !! imaginary part of a rate that is none, relative
    real(dp), parameter :: full_turn = 8*atan(1.0_dp)
@@ -88,7 +80,7 @@ contains
       type(projected_motions_type) :: projection
       complex(dp), allocatable :: rates(:)
       real(dp) :: bound, fastest, slowest
-      logical :: is_known
+      logical :: is_known, is_sparse
 
       call motion%begin(simulation%bodies, simulation%state, simulation%heat_reductions( &
          simulation%in_use), simulation%solved, error)
@@ -99,7 +91,11 @@ contains
       rates = [complex(dp) ::]
       is_known = .true.
       bound = 0.0_dp
-      if (size(motion%reads, 2) > 0) then
+      is_sparse = simulation%bodies%thermal%division%is_tail()
+      if (is_sparse) then
+         call seek(model, simulation, motion, slowest, rates, bound, error)
+         if (allocated(error)) return
+      else if (motion%changes > 0) then
          call project(model, simulation, motion, response, projection, bound, error)
          if (allocated(error)) return
          call projection%rates(rates, is_known)
@@ -109,18 +105,62 @@ contains
          call response%make(model, simulation, motion, above*max(fastest, slower*slowest), &
             error)
          if (allocated(error)) return
-         call sample(simulation, response, projection)
-         call projection%rates(rates, is_known)
+         if (.not. is_sparse) then
+            call sample(simulation, response, projection)
+            call projection%rates(rates, is_known)
+         end if
       end if
-      record%stability%unstable_modes = count(real(rates) > neutral_part*slowest)
+      if (.not. is_sparse) record%stability%unstable_modes = &
+         count(real(rates) > neutral_part*slowest)
       call find_fastest(simulation, motion, response, rates, neutral_part*slowest, &
          model%steps(record%step)%stability_modes, record)
       call response%release()
       if (.not. is_known) call record%stability%add_doubt( &
          'the projected bodies have no sound eigenvalues')
-      if (.not. bound < 1.0_dp) call record%stability%add_doubt('faster motions may grow, as '// &
-         'where what expands, or is heated by its slip, has no heat capacity')
+      if (bound < 1.0_dp) return
+      if (is_sparse) then
+         call record%stability%add_doubt('on a sparse tail nothing proves that no other motion '// &
+            'grows')
+      else
+         call record%stability%add_doubt('faster motions may grow, as where what expands, or '// &
+            'is heated by its slip, has no heat capacity')
+      end if
    end subroutine find_motions
+
+   !> Seeks growing motions of a sparse tail, unless the bound of the gain says that none grows.
+   !> Errors: as motion_response_type's make.
+   subroutine seek(model, simulation, motion, slowest, rates, bound, error)
+      type(model_type), intent(in) :: model
+      type(simulation_type), intent(in) :: simulation
+      type(linear_perturbation_type), intent(in) :: motion
+      real(dp), intent(in) :: slowest                        ! conduction [1/time]
+      complex(dp), allocatable, intent(out) :: rates(:)      ! that are found
+      real(dp), intent(out) :: bound                         ! of the gain at all rates
+      type(error_type), allocatable, intent(out) :: error
+      type(motion_response_type) :: response
+      type(leading_modes_type) :: modes
+      integer :: i
+
+      rates = [complex(dp) ::]
+      bound = 0.0_dp
+      if (motion%takes_rates) then
+         call response%make(model, simulation, motion, instant*slowest, error)
+         if (allocated(error)) return
+         bound = response%gain_bound(simulation%bodies, motion)
+      end if
+      call response%make(model, simulation, motion, neutral_part*slowest, error)
+      if (allocated(error)) return
+      bound = hypot(bound, response%gain_bound(simulation%bodies, motion))
+      if (bound < 1.0_dp) return
+      do i = 1, most_rates
+         call response%make(model, simulation, motion, slower*slowest*ratio**(i - 1), error)
+         if (allocated(error)) return
+         call modes%find(simulation, motion, response, 0.0_dp, 0, 1)
+         rates = [rates, pack(modes%rate, modes%is_sharp)]
+         if (i >= least_rates .and. response%gain_bound(simulation%bodies, motion) < 1.0_dp) exit
+      end do
+      call response%release()
+   end subroutine seek
 
    !> Projects the bodies on their responses, from the first one on, up to a rate beyond which no
    !> motion grows by the bound of the gain. The part of it that takes rates grows with them: it is
@@ -198,43 +238,22 @@ contains
       real(dp), intent(in) :: neutral                        !! a rate that is no growth [1/time]
       integer, intent(in) :: wanted                          !! motions that are told
       type(increment_record_type), intent(inout) :: record   !! receives them
-      type(arnoldi_type) :: modes
-      type(lu_type) :: coupling
-      complex(dp), allocatable :: rates(:)
-      logical, allocatable :: is_sharp(:)
-      logical :: singular
+      type(leading_modes_type) :: modes
       integer, allocatable :: leading(:)
-      integer :: fastest, growing, i
+      integer :: growing, i
 
-      associate (n => size(response%answer, 1))
-         call coupling%factor(reshape([1.0_dp, (spread(0.0_dp, 1, n), 1.0_dp, i=2, n)], [n, n]) - &
-            (response%answer + response%sigma*response%by_rate), singular)
-      end associate
-      call modes%begin(size(simulation%state%temperature), 0.0_dp, most_products)
-      rates = [complex(dp) ::]
-      is_sharp = [logical ::]
-      do while (modes%wants_product .and. .not. singular)
-         call modes%take(inverse_product(simulation, motion, response, coupling, modes%vector))
-         if (.not. modes%is_checked) cycle
-         rates = rates_of(modes%value, response%sigma)
-         is_sharp = modes%residual <= sharp*abs(modes%value)
-         leading = fastest_of(rates, is_sharp, wanted)
-         if (size(leading) == 0) cycle
-         associate (last => rates(leading(size(leading))))
-            if (count(is_sharp .and. real(rates) > neutral) >= record%stability%unstable_modes &
-               .and. size(leading) == wanted .and. all(is_sharp .or. real(rates) <= &
-               min(0.0_dp, real(last)))) exit
-         end associate
-      end do
-      leading = fastest_of(rates, is_sharp, wanted)
+      call modes%find(simulation, motion, response, neutral, record%stability%unstable_modes, &
+         wanted)
+      leading = modes%leading
       if (size(leading) == 0) then
          call record%stability%add_doubt('Arnoldi''s method finds no motion')
          return
       end if
-      fastest = leading(1)
-      call take_motion(modes%eigenvector(fastest), rates(fastest), simulation, motion, record)
-      growing = count(is_sharp .and. real(rates) > neutral)
-      associate (found => record%stability)
+      growing = count(modes%is_sharp .and. real(modes%rate) > neutral)
+      associate (found => record%stability, rates => modes%rate, is_sharp => modes%is_sharp, &
+         fastest => leading(1))
+         call take_motion(modes%space%eigenvector(fastest), rates(fastest), simulation, motion, &
+            record)
          if (abs(rates(fastest)) <= neutral) found%growth_rate = 0.0_dp
          ! Those behind one that is not sharp are not told: it may be faster.
          leading = pack(leading, [(i == 1 .or. .not. any(real(rates) > real(rates(leading(i))) &
@@ -244,7 +263,9 @@ contains
          do i = 2, size(leading)
             found%leading(:, i) = [real(rates(leading(i))), period_of(rates(leading(i)))]
          end do
-         if (growing /= found%unstable_modes) then
+         if (simulation%bodies%thermal%division%is_tail()) then
+            found%unstable_modes = growing
+         else if (growing /= found%unstable_modes) then
             call found%add_doubt('the projected bodies have '//counted(found%unstable_modes, &
                'growing motion')//', Arnoldi''s method finds '//to_text(growing))
             ! Those that it finds are motions of the bodies themselves.
@@ -257,23 +278,6 @@ contains
       end associate
    end subroutine find_fastest
 
-   !> The fastest ones of sharp rates, the fastest first; of two that swing together one.
-   pure function fastest_of(rates, is_sharp, wanted) result(leading)
-      complex(dp), intent(in) :: rates(:)
-      logical, intent(in) :: is_sharp(:)
-      integer, intent(in) :: wanted            ! most of them
-      integer, allocatable :: leading(:)       ! indexes into rates
-      logical :: is_left(size(rates))
-      integer :: i
-
-      is_left = is_sharp .and. aimag(rates) >= 0.0_dp .and. real(rates) > -huge(1.0_dp)
-      leading = [integer ::]
-      do i = 1, min(wanted, count(is_left))
-         leading = [leading, maxloc(real(rates), mask=is_left, dim=1)]
-         is_left(leading(i)) = .false.
-      end do
-   end function fastest_of
-
    !> Period of the oscillation of a rate; 0 without one.
    pure real(dp) function period_of(rate) result(period)
       complex(dp), intent(in) :: rate
@@ -281,19 +285,6 @@ contains
       period = 0.0_dp
       if (abs(aimag(rate)) > nearly_real*abs(rate)) period = full_turn/abs(aimag(rate))
    end function period_of
-
-   !> Rates of eigenvalues; those that are none decay at once.
-   pure function rates_of(values, sigma) result(rates)
-      complex(dp), intent(in) :: values(:)
-      real(dp), intent(in) :: sigma
-      complex(dp) :: rates(size(values))
-      integer :: i
-
-      rates = -huge(sigma)
-      do i = 1, size(values)
-         if (abs(values(i)) > nothing*maxval(abs(values))) rates(i) = sigma - 1.0_dp/values(i)
-      end do
-   end function rates_of
 
    !> The motion, with a largest temperature of 1.
    subroutine take_motion(vector, rate, simulation, motion, record)
@@ -318,27 +309,5 @@ contains
             simulation%state, temperature), [2, size(temperature)])
       end associate
    end subroutine take_motion
-
-   !> A product with the inverse.
-   function inverse_product(simulation, motion, response, coupling, vector) result(temperature)
-      type(simulation_type), intent(in) :: simulation
-      type(linear_perturbation_type), intent(in) :: motion
-      type(motion_response_type), intent(in) :: response
-      type(lu_type), intent(in) :: coupling                  ! I - N W
-      real(dp), intent(in) :: vector(:)                      ! (nodes)
-      real(dp) :: temperature(size(vector))                  ! (nodes)
-      real(dp), allocatable :: changes(:, :), columns(:, :)
-
-      associate (bodies => simulation%bodies)
-         columns = reshape(bodies%capacity%multiply(vector), [size(vector), 1])
-         columns = response%solve(bodies, columns)
-         changes = motion%answers(columns, response%sigma)
-         if (motion%takes_rates) changes = changes - transposed_product( &
-            motion%reads_rate, reshape(vector, [size(vector), 1]))
-         call coupling%solve(changes)
-         columns = columns + product_of(response%temperature, changes)
-      end associate
-      temperature = columns(:, 1)
-   end function inverse_product
 
 end module growing_modes

@@ -8,12 +8,15 @@
 !> contact answers temperatures: with its strains, its gaps and pressures, and the laws. Open,
 !> slipping and stuck contact points keep their states, points at rest their conductance. At edges
 !> inside a side of mortar points heat follows the openings themselves, which move the edges.
+!>
+!> N is formed as rows over the nodes; on a sparse tail each answer is a solution of its own
+!> (contact_answers).
 module linear_perturbations
    use closing_instant, only: contact_change_type, contact_response
+   use contact_answers, only: contact_answers_type
    use contact_heat, only: changes_by_faces
    use contact_operator, only: make_graph, opening_changes, openings
    use contact_system, only: closing_law_type
-   use contact_workspace, only: contact_workspace_type
    use dense, only: transposed_product
    use edge_heat, only: find_heat_by_opening
    use errors, only: error_type
@@ -28,23 +31,21 @@ module linear_perturbations
    public :: linear_perturbation_type
 
    !> How the contact answers temperatures.
-   type :: linear_perturbation_type
-      integer, allocatable :: active(:)        !! (a) contact points whose conductance counts
+   type, extends(contact_answers_type) :: linear_perturbation_type
       logical :: takes_rates = .false.         !! whether y depends on dT/dt: by slip that goes on
       real(dp), allocatable :: reads(:, :)     !! (nodes, n) N^T at constant temperatures
       !> (nodes, n) what it has more at unit rate, where that is anything
       real(dp), allocatable :: reads_rate(:, :)
       real(dp), allocatable, private :: heat_rate(:)    !! (a) heat against the jump per conductance
-      integer, private :: heated = 0                    !! heats of friction behind the active
-      !> contact points whose openings come behind these
-      integer, allocatable, private :: at_edge(:)
-      real(dp), allocatable, private :: edge_heat(:, :) !! (nodes, of these) heat per opening
-      type(contact_workspace_type), private :: tangent  !! factors of the contact states
+      !> (nodes, at edges) heat per opening
+      real(dp), allocatable, private :: edge_heat(:, :)
    contains
       procedure :: begin
       procedure :: answers
+      procedure :: answers_to_rates
       procedure :: heats
       procedure :: heat_loads
+      procedure :: nodal_heat
       procedure :: displacement
    end type linear_perturbation_type
 
@@ -59,7 +60,6 @@ contains
       type(heat_reduction_type), intent(in) :: heat            !! of the increment
       type(increment_workspace_type), intent(in) :: solved     !! workspace that it left
       type(error_type), allocatable, intent(out) :: error
-      type(increment_workspace_type) :: laws                   ! graphs, faces, heat of friction
       real(dp), dimension(size(state%jump)) :: coordinate, heat_rate, opening, slope
       integer :: k
 
@@ -71,17 +71,17 @@ contains
       self%tangent%closing = closing_law_type()
       call self%tangent%factor_set(bodies%equilibrium%contact, state%contact, error)
       if (allocated(error) .or. .not. bodies%is_coupled) return
-      laws%pass%graph = make_graph(bodies, heat, 1.0_dp)
-      laws%pass%graph%law = solved%pass%graph%law
-      if (allocated(solved%faces)) laws%faces = solved%faces
-      laws%friction = solved%friction
-      opening = openings(bodies, laws%pass%graph, state%contact)
-      coordinate = laws%pass%graph%coordinate_of_opening(opening)
-      slope = laws%pass%graph%derivative(coordinate)
+      self%laws%pass%graph = make_graph(bodies, heat, 1.0_dp)
+      self%laws%pass%graph%law = solved%pass%graph%law
+      if (allocated(solved%faces)) self%laws%faces = solved%faces
+      self%laws%friction = solved%friction
+      opening = openings(bodies, self%laws%pass%graph, state%contact)
+      coordinate = self%laws%pass%graph%coordinate_of_opening(opening)
+      slope = self%laws%pass%graph%derivative(coordinate)
       heat_rate = -heat_across(bodies%points%weight, 1.0_dp, state%jump)
       if (allocated(state%edge%point)) then
          ! There are none where laws follow temperatures.
-         call find_heat_by_opening(bodies, laws%pass%graph, opening, state%resting, &
+         call find_heat_by_opening(bodies, self%laws%pass%graph, opening, state%resting, &
             state%temperature, self%at_edge, self%edge_heat)
          heat_rate(state%edge%point) = 0.0_dp
       end if
@@ -93,20 +93,22 @@ contains
          self%heated = size(solved%friction%heat)
          self%takes_rates = any(bodies%laws%heat%speed < 0.0_dp)
       end if
-      call read_temperatures(self, bodies, state, laws, slope)
-      if (bodies%points%vary_with_temperature()) call read_faces(self, bodies, laws, coordinate)
+      self%changes = size(self%active) + self%heated + size(self%at_edge)
+      self%contact = state%contact
+      self%coordinate = coordinate
+      self%slope = slope
+      if (heat%schur%is_sparse()) return
+      call read_temperatures(self, bodies)
+      if (bodies%points%vary_with_temperature()) call read_faces(self, bodies)
    end subroutine begin
 
    !> How the changes y follow temperatures by the strains of the bodies: what loads of the
    !> mechanical tail change, of which temperatures make those that temperatures_in_loads has.
-   subroutine read_temperatures(self, bodies, state, laws, slope)
+   subroutine read_temperatures(self, bodies)
       type(linear_perturbation_type), intent(inout) :: self           ! receives it
       type(reduced_bodies_type), intent(in) :: bodies
-      type(solution_state_type), intent(in) :: state
-      type(increment_workspace_type), intent(in) :: laws
-      real(dp), intent(in) :: slope(:)                         ! (m) of omega by the opening
       real(dp), dimension(bodies%mechanical%map%tail, bodies%mechanical%map%tail) :: unit
-      real(dp) :: change(size(slope), size(unit, 2))
+      real(dp) :: change(size(self%slope), size(unit, 2))
       real(dp), dimension(size(unit, 1), size(self%active) + self%heated + size(self%at_edge)) :: &
          by_load, by_rate
       type(contact_change_type) :: of_contact
@@ -116,18 +118,18 @@ contains
       do k = 1, size(unit, 1)
          unit(k, k) = 1.0_dp
       end do
-      call opening_changes(bodies, laws%pass%graph, self%tangent, state%contact, unit, change, &
-         of_contact)
+      call opening_changes(bodies, self%laws%pass%graph, self%tangent, self%contact, unit, &
+         change, of_contact)
       by_rate = 0.0_dp
-      associate (a => size(self%active), friction => laws%friction)
+      associate (a => size(self%active), friction => self%laws%friction)
          do k = 1, a
-            by_load(:, k) = slope(self%active(k))*change(self%active(k), :)
+            by_load(:, k) = self%slope(self%active(k))*change(self%active(k), :)
          end do
          if (self%heated > 0) then
             by_load(:, a + 1:a + self%heated) = transpose(friction%changes(bodies, &
-               state%contact, of_contact, 0.0_dp))
+               self%contact, of_contact, 0.0_dp))
             by_rate(:, a + 1:a + self%heated) = transpose(friction%changes(bodies, &
-               state%contact, of_contact, 1.0_dp)) - by_load(:, a + 1:a + self%heated)
+               self%contact, of_contact, 1.0_dp)) - by_load(:, a + 1:a + self%heated)
          end if
          by_load(:, a + self%heated + 1:) = transpose(change(self%at_edge, :))
       end associate
@@ -136,18 +138,16 @@ contains
    end subroutine read_temperatures
 
    !> Adds how conductances follow the temperatures of the faces by their laws.
-   pure subroutine read_faces(self, bodies, laws, coordinate)
+   pure subroutine read_faces(self, bodies)
       type(linear_perturbation_type), intent(inout) :: self
       type(reduced_bodies_type), intent(in) :: bodies
-      type(increment_workspace_type), intent(in) :: laws
-      real(dp), intent(in) :: coordinate(:)                    ! (m) of the laws [length]
-      real(dp), dimension(size(coordinate), 2) :: mean, jump, change
-      real(dp) :: unit(size(coordinate))
+      real(dp), dimension(size(self%coordinate), 2) :: mean, jump, change
+      real(dp) :: unit(size(self%coordinate))
       integer :: k
 
-      mean = spread([1.0_dp, 0.0_dp], 1, size(coordinate))
+      mean = spread([1.0_dp, 0.0_dp], 1, size(self%coordinate))
       jump = 1.0_dp - mean
-      change = changes_by_faces(bodies, laws, coordinate, mean, jump)
+      change = changes_by_faces(bodies, self%laws, self%coordinate, mean, jump)
       do k = 1, size(self%active)
          unit = 0.0_dp
          unit(self%active(k)) = change(self%active(k), 1)
@@ -158,23 +158,43 @@ contains
    end subroutine read_faces
 
    !> N: changes y with temperatures that grow at a rate.
-   pure function answers(self, temperature, growth) result(changes)
+   function answers(self, bodies, temperature, growth) result(changes)
       class(linear_perturbation_type), intent(in) :: self
+      type(reduced_bodies_type), intent(in) :: bodies
       real(dp), intent(in) :: temperature(:, :)                !! (nodes, columns) [temperature]
       real(dp), intent(in) :: growth                           !! [1/time]
-      real(dp) :: changes(size(self%reads, 2), size(temperature, 2))
+      real(dp) :: changes(self%changes, size(temperature, 2))
 
+      if (bodies%thermal%division%is_tail() .and. self%changes > 0) then
+         changes = self%found_answers(bodies, temperature, growth)
+         return
+      end if
       changes = transposed_product(self%reads, temperature)
       if (self%takes_rates) changes = changes + &
          growth*transposed_product(self%reads_rate, temperature)
    end function answers
+
+   !> N': what changes y have more with temperatures that grow at unit rate.
+   function answers_to_rates(self, bodies, temperature) result(changes)
+      class(linear_perturbation_type), intent(in) :: self
+      type(reduced_bodies_type), intent(in) :: bodies
+      real(dp), intent(in) :: temperature(:, :)                !! (nodes, columns) [temperature]
+      real(dp) :: changes(self%changes, size(temperature, 2))
+
+      if (bodies%thermal%division%is_tail() .and. self%changes > 0) then
+         changes = self%found_answers(bodies, temperature, 1.0_dp) - &
+            self%found_answers(bodies, temperature, 0.0_dp)
+      else
+         changes = transposed_product(self%reads_rate, temperature)
+      end if
+   end function answers_to_rates
 
    !> F^T T: the heats of unit changes at the temperatures of a field.
    pure function heats(self, bodies, temperature) result(sums)
       class(linear_perturbation_type), intent(in) :: self
       type(reduced_bodies_type), intent(in) :: bodies
       real(dp), intent(in) :: temperature(:, :)                !! (nodes, n)
-      real(dp) :: sums(size(self%reads, 2), size(temperature, 2))
+      real(dp) :: sums(self%changes, size(temperature, 2))
       real(dp) :: jump(size(bodies%points%slave))
       integer :: k
 
@@ -212,6 +232,26 @@ contains
       end do
       if (size(self%at_edge) > 0) nodal(:, self%heated + 1:) = self%edge_heat
    end subroutine heat_loads
+
+   !> F y, as heat that enters nodes.
+   pure function nodal_heat(self, bodies, changes) result(nodal)
+      class(linear_perturbation_type), intent(in) :: self
+      type(reduced_bodies_type), intent(in) :: bodies
+      real(dp), intent(in) :: changes(:)                       !! (n) y
+      real(dp) :: nodal(bodies%thermal%matrix%row_count)       !! (nodes) [power]
+      real(dp) :: crossing(size(bodies%points%slave))
+
+      associate (a => size(self%active))
+         crossing = 0.0_dp
+         crossing(self%active) = self%heat_rate*changes(:a)
+         nodal = 0.0_dp
+         call bodies%points%difference%add_shares(crossing, nodal)
+         if (self%heated > 0) call bodies%points%heat_shares%add_shares( &
+            changes(a + 1:a + self%heated), nodal)
+         if (size(self%at_edge) > 0) nodal = nodal + matmul(self%edge_heat, &
+            changes(a + self%heated + 1:))
+      end associate
+   end function nodal_heat
 
    !> Displacements that temperatures make.
    function displacement(self, bodies, state, temperature) result(values)

@@ -1,11 +1,14 @@
 !> Responses of the bodies to unit changes at the contact points that grow at a rate, and the
 !> answers of the contact to them: the conduction of bodies, films and contact at the conductances
-!> of a state, A, and their heat capacity at the rate are factored together.
+!> of a state, A, and their heat capacity at the rate are factored together. On a sparse tail the
+!> responses are not formed, but found of the changes that are asked for.
 module motion_responses
+   use arnoldi, only: arnoldi_type
    use contact_heat, only: temperature_jumps
    use controls, only: implicit_scheme
    use dense, only: eigenvalues, product_of, transposed_product
    use errors, only: error_type
+   use gmres, only: gmres_type
    use heat_equation, only: heat_equation_type
    use heat_reduction, only: heat_reduction_type
    use increment_data, only: increment_data_type, increment_workspace_type
@@ -32,10 +35,16 @@ module motion_responses
    contains
       procedure :: make
       procedure :: solve
+      procedure :: response_to
+      procedure :: settled
       procedure :: gain_bound
       procedure :: stored
       procedure :: release
    end type motion_response_type
+
+   integer, parameter :: most_products = 300
+   real(dp), parameter :: converged = 1.0e-12_dp     !! residual of changes, relative
+   real(dp), parameter :: rough = 1.0e-3_dp          !! residual of a bound, beside 1
 
 contains
 
@@ -52,7 +61,7 @@ contains
 
       self%sigma = sigma
       call factor(self, model, simulation, error)
-      if (allocated(error)) return
+      if (allocated(error) .or. self%heat%schur%is_sparse()) return
       associate (bodies => simulation%bodies, a => size(motion%active))
          call motion%heat_loads(bodies, on_tail, nodal)
          call self%tail%solve_columns(on_tail)
@@ -60,11 +69,12 @@ contains
          temperature(:, :a) = self%heat%extended(bodies%thermal, on_tail)
          temperature(:, a + 1:) = self%solve(bodies, nodal)
          self%exchange = motion%heats(bodies, temperature)
+         call move_alloc(temperature, self%temperature)
+         self%answer = motion%answers(bodies, self%temperature, 0.0_dp)
+         self%by_rate = 0.0_dp*self%answer
+         if (motion%takes_rates) self%by_rate = motion%answers(bodies, self%temperature, &
+            1.0_dp) - self%answer
       end associate
-      call move_alloc(temperature, self%temperature)
-      self%answer = motion%answers(self%temperature, 0.0_dp)
-      self%by_rate = 0.0_dp*self%answer
-      if (motion%takes_rates) self%by_rate = motion%answers(self%temperature, 1.0_dp) - self%answer
    end subroutine make
 
    !> Factors A + sigma C.
@@ -121,6 +131,35 @@ contains
       temperature = temperature + self%heat%extended(bodies%thermal, on_tail)
    end function solve
 
+   !> Temperatures W y under changes of a sparse tail.
+   function response_to(self, bodies, motion, changes) result(temperature)
+      class(motion_response_type), intent(in) :: self
+      type(reduced_bodies_type), intent(in) :: bodies
+      type(linear_perturbation_type), intent(in) :: motion
+      real(dp), intent(in) :: changes(:)                       !! (n) y
+      real(dp) :: temperature(bodies%thermal%matrix%row_count, 1)   !! [temperature]
+
+      temperature = self%solve(bodies, reshape(motion%nodal_heat(bodies, changes), &
+         shape(temperature)))
+   end function response_to
+
+   !> Changes of a sparse tail with those that temperatures make: (I - N W)^-1 of the latter.
+   function settled(self, bodies, motion, changes)
+      class(motion_response_type), intent(in) :: self
+      type(reduced_bodies_type), intent(in) :: bodies
+      type(linear_perturbation_type), intent(in) :: motion
+      real(dp), intent(in) :: changes(:)                       !! (n)
+      real(dp) :: settled(size(changes)), answer(size(changes), 1)
+      type(gmres_type) :: gmres
+
+      call gmres%begin(changes, converged, max(min(size(changes), most_products), 1))
+      do while (gmres%wants_product)
+         answer = motion%answers(bodies, self%response_to(bodies, motion, gmres%vector), self%sigma)
+         call gmres%take(gmres%vector - answer(:, 1))
+      end do
+      settled = gmres%solution()
+   end function settled
+
    !> Bound of the moduli of the eigenvalues of U'(s) for all s of this modulus on the right of the
    !> imaginary axis, and, unless the contact takes rates, of all larger moduli. A decay rate l of
    !> the bodies has |s + l| >= (|s| + l)/sqrt(2) there, so that with R = (A + |s| C)^-1
@@ -136,6 +175,10 @@ contains
       real(dp), allocatable :: read(:, :), real_part(:), imaginary_part(:)
       logical :: found
 
+      if (self%heat%schur%is_sparse()) then
+         bound = sqrt(2*largest_product(self, bodies, motion))
+         return
+      end if
       read = transposed_product(motion%reads, self%solve(bodies, motion%reads))
       if (motion%takes_rates) read = 2*(read + self%sigma**2*transposed_product( &
          motion%reads_rate, self%solve(bodies, motion%reads_rate)))
@@ -143,6 +186,46 @@ contains
       bound = huge(bound)
       if (found) bound = sqrt(2*maxval(hypot(real_part, imaginary_part)))
    end function gain_bound
+
+   !> Largest eigenvalue of (F^T R F) (N R N^T) on a sparse tail, and what is not known of it.
+   real(dp) function largest_product(self, bodies, motion) result(largest)
+      class(motion_response_type), intent(in) :: self
+      type(reduced_bodies_type), intent(in) :: bodies
+      type(linear_perturbation_type), intent(in) :: motion
+      real(dp) :: exchanged(motion%changes, 1)
+      real(dp), allocatable :: read(:)
+      type(arnoldi_type) :: products
+
+      largest = 0.0_dp
+      if (motion%changes == 0) return
+      call products%begin(motion%changes, 0.0_dp, enough=rough)
+      do while (products%wants_product)
+         if (motion%takes_rates) then
+            read = 2*(read_by(0.0_dp, 1.0_dp) + read_by(self%sigma, 0.0_dp))
+         else
+            read = read_by(0.0_dp, 1.0_dp)
+         end if
+         exchanged = motion%heats(bodies, self%response_to(bodies, motion, read))
+         call products%take(exchanged(:, 1))
+      end do
+      largest = huge(largest)
+      if (products%found) largest = abs(products%largest) + rough
+   contains
+      !> N R N^T y with the part of N at constant temperatures, or with that of rates alone.
+      function read_by(rate, constant) result(changes)
+         real(dp), intent(in) :: rate, constant
+         real(dp) :: changes(motion%changes), sums(bodies%thermal%matrix%row_count, 1)
+         real(dp) :: answer(motion%changes, 1)
+
+         sums(:, 1) = motion%sums_of_answers(bodies, products%vector, rate)
+         if (constant <= 0.0_dp) sums(:, 1) = sums(:, 1) - motion%sums_of_answers(bodies, &
+            products%vector, 0.0_dp)
+         sums = self%solve(bodies, sums)
+         answer = motion%answers(bodies, sums, rate)
+         if (constant <= 0.0_dp) answer = answer - motion%answers(bodies, sums, 0.0_dp)
+         changes = answer(:, 1)
+      end function read_by
+   end function largest_product
 
    !> W^T C W.
    function stored(self, simulation)

@@ -15,6 +15,7 @@ FINITE = ", SLIDING=FINITE"
 RAIL = mesh("RAIL", np.linspace(0.0, 10.0, 41), [-2.0, -1.0, -0.5, -0.25, 0.0], "CPE4")
 AMONG_RAIL = [n for n, (_, y) in nodes_of(RAIL).items() if y == 0.0]
 START, WIDTH = 2.0, 1.5
+TAILS = pytest.mark.parametrize("tail", ["FULL", "SPARSE"])
 SCALE = 1e-3   # by which strains are 1e-6
 
 
@@ -99,11 +100,12 @@ def test_tiny_strains_give_what_small_sliding_gives_where_the_pad_is_drawn(tmp_p
     assert_same_fields(slid, drawn, 4e-6, 0.37)
 
 
+@TAILS
 @pytest.mark.parametrize("pair", PAIRS)
-def test_what_slides_is_relative(tmp_path, pair):
+def test_what_slides_is_relative(tmp_path, pair, tail):
     """The rail moved the other way, its nodes by far more than strains."""
     one = final(tmp_path, "pad", sliding(0.8, pair))
-    other = final(tmp_path, "rail", sliding(0.8, pair, turned=True))
+    other = final(tmp_path, "rail", sliding(0.8, pair, turned=True, cards=[f"*SOLVER, TAIL={tail}"]))
     other["displacement"][:, 0] += 0.8
     assert_same_fields(other, one, 1e-6)
 
@@ -125,14 +127,16 @@ def test_a_tie_and_another_interface_beside(tmp_path):
     assert_same_fields(slid, drawn, 1e-6)
 
 
+@TAILS
 @pytest.mark.parametrize("pair", PAIRS)
-def test_friction_takes_the_work_of_the_drive(tmp_path, pair):
+def test_friction_takes_the_work_of_the_drive(tmp_path, pair, tail):
     """Once all slips; strains are 1e-4."""
     changes = {"*COUPLED TEMPERATURE-DISPLACEMENT, STEADY STATE": "*COUPLED TEMPERATURE-DISPLACEMENT",
                "*CONDUCTIVITY": "*DENSITY\n1.\n*SPECIFIC HEAT\n1.\n*CONDUCTIVITY",
                "*FRICTION": "*GAP HEAT GENERATION\n0.5\n*FRICTION",
                "*STEP, INC": "*AMPLITUDE, NAME=SLIDE\n0., 0., 1., 1.\n*STEP, INC"}
-    text = "\n".join(sliding(1.0, pair, scale=0.1, friction=0.2, increment=0.05, direct=", DIRECT"))
+    text = "\n".join(sliding(1.0, pair, scale=0.1, friction=0.2, increment=0.05, direct=", DIRECT",
+                             cards=[f"*SOLVER, TAIL={tail}"]))
     for old, new in changes.items():
         text = text.replace(old, new)
     text = text.replace("*BOUNDARY\nPAD.TOP, 1, 1", "*BOUNDARY, AMPLITUDE=SLIDE\nPAD.TOP, 1, 1")

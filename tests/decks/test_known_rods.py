@@ -37,6 +37,7 @@ RODS = {
     "r3-middle": known(1.2e-4, 0.0, 12e-6, 0.005, 1e-5),
     "r3-closed": known(1.2e-4, 0.0, 12e-6, 0.005, 1e-5),
 }
+TAILS = pytest.mark.parametrize("tail", ["FULL", "SPARSE"])
 BRANCH = {"r3-middle": 1, "r3-closed": 2}   # of the solutions, by ascending conductance
 
 
@@ -164,13 +165,14 @@ def test_newton_squares_the_residual_under_a_power_of_the_pressure(rod, tmp_path
     assert (near[1:-1] < near[:-2]**1.5).all(), near
 
 
-def test_several_solutions_are_said_only_on_proof(rod):
+@TAILS
+def test_several_solutions_are_said_only_on_proof(rod, tail):
     process, _, gain, _ = rod("r3-middle")
     assert "at least two other solutions" in process.stderr
     assert gain[0] == gain[1]
     for name in ("r1", "r3-open", "r3-closed"):
         assert "solutions" not in rod(name)[0].stderr
-    process, omega, *_ = rod("r3-open", {"FROM=OPEN": "FROM=BOTH"})
+    process, omega, *_ = rod("r3-open", {"FROM=OPEN": f"FROM=BOTH\n*SOLVER, TAIL={tail}"})
     assert "different solutions; this is one of several" in process.stderr
     np.testing.assert_allclose(omega, rods.solutions(*RODS["r3-open"])[0], rtol=1e-8)
 
@@ -191,8 +193,9 @@ def test_start_decides_which_solution_is_found(rod, tmp_path, cards, other):
     note_changes(*decks)
 
 
-def test_both_ends_lead_to_one_solution(rod, tmp_path):
-    process, *_ = rod("r2", {CARD: CARD + "\n*START, FROM=BOTH"})
+@TAILS
+def test_both_ends_lead_to_one_solution(rod, tmp_path, tail):
+    process, *_ = rod("r2", {CARD: CARD + f"\n*START, FROM=BOTH\n*SOLVER, TAIL={tail}"})
     assert process.returncode == 0, process.stderr
     assert "solutions" not in process.stderr
     assert "lead to one solution" in (tmp_path / "rods" / "r2.lst").read_text()

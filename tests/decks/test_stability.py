@@ -262,6 +262,20 @@ def test_motions_grow_alike_however_slow_a_body_is(ratio, depth, slow, tmp_path)
         assert found["growth_rate"] == pytest.approx(max(rates), rel=2e-3)
 
 
+@pytest.mark.parametrize("ratio", [0.2, 0.9, 1.9, 4.5])
+def test_motions_of_a_sparse_tail_grow_as_in_closed_form(ratio, tmp_path):
+    """It is certain that none grows where the bound of the gain says so."""
+    rates = [m**2 * burton(ratio / m)[0] for m in range(1, 9)]
+    growing = sum(rate > 0.0 for rate in rates)
+    result, printed = solved(tmp_path, ["*SOLVER, TAIL=SPARSE", *half_plane(ratio, 14.0)])
+    found = stability_of(result)
+    assert found["certain"] == (ratio < 0.5), printed
+    assert ("nothing proves that no other motion grows" in printed) == (ratio > 0.5)
+    assert found["unstable_modes"] == growing
+    if growing:
+        assert found["growth_rate"] == pytest.approx(max(rates), rel=2e-3)
+
+
 def test_heat_of_a_largest_shear_follows_no_pressure(tmp_path):
     """A bar on an insulating wall, at 0 at its other end, cools with exp(-(pi/2)^2 t)."""
     cards = bar_on_a_wall(2.0, analysis="STEADY STATE, DIRECT")

@@ -68,15 +68,13 @@ contains
    !> A sparse tail has no derivatives between all contact points.
    subroutine check_tail(deck)
       type(deck_type), intent(inout) :: deck
-      character(:), allocatable :: what
       integer, allocatable :: cards(:)
 
       if (deck%model%tail /= tail_sparse .or. .not. deck%analyses_sound) return
-      what = needs_full_tail(deck%model)
-      if (len(what) == 0) return
+      if (.not. needs_full_tail(deck%model)) return
       cards = cards_of(deck%cards, 'SOLVER')
-      call deck%error(deck%cards%keywords(cards(1))%place, 'TAIL=SPARSE does not go with '//what// &
-         ', which needs derivatives between all contact points; leave TAIL= out')
+      call deck%error(deck%cards%keywords(cards(1))%place, 'TAIL=SPARSE does not go with '// &
+         '*CONTINUATION, which needs derivatives between all contact points; leave TAIL= out')
    end subroutine check_tail
 
    !> The reference node of a section has no displacements in the plane, which other cards relate.
