@@ -116,8 +116,14 @@ contains
       call find_fastest(simulation, motion, response, rates, neutral_part*slowest, &
          model%steps(record%step)%stability_modes, record)
       call response%release()
-      if (.not. is_known) call record%stability%add_doubt( &
-         'the projected bodies have no sound eigenvalues')
+      if (.not. is_known) then
+         if (abs(record%stability%growth_rate) < slower*slowest .and. &
+            record%stability%is_known) then
+            call record%stability%add_doubt('at the limit of stability: a growth rate is nearly 0')
+         else
+            call record%stability%add_doubt('the number of growing modes could not be checked')
+         end if
+      end if
       if (.not. bound < 1.0_dp) call record%stability%add_doubt('faster motions may grow, as '// &
          'where what expands, or is heated by its slip, has no heat capacity')
    end subroutine find_motions
