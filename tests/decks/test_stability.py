@@ -1,6 +1,7 @@
 """Whether states last: growing small motions of rods, against dense eigenvalues of the rods in
 closed form, and what *STABILITY says where there is nothing to analyse."""
 
+import csv
 import re
 
 import h5py
@@ -532,6 +533,32 @@ def test_checks_may_name_what_is_found(tmp_path):
              "unstable_modes, , LAST, 1., 0., ABS", "period, , LAST, 0., 0., ABS"]
     solved(tmp_path, [*middle(), *check, f"growth_rate, , LAST, {rate!r}, 1e-3"])
     solved(tmp_path, [*middle(), *check, f"growth_rate, , LAST, {2 * rate!r}, 1e-3"], status=4)
+
+
+def test_a_table_of_runs_has_the_fastest_mode(tmp_path):
+    """Of the middle state of the rods, whose only growing motion doubles in 270 s."""
+    deck = tmp_path / "deck.inp"
+    deck.write_text("\n".join(["*PARAMETER", "number = 1.", *middle()]) + "\n")
+    (tmp_path / "values.csv").write_text("number\n1.\n")
+    done = run("run", deck, "--quiet", "--table", tmp_path / "values.csv", "--out", tmp_path)
+    assert done.returncode == 0, done.stderr
+    with open(tmp_path / "deck.table.csv", newline="") as file:
+        (row,) = csv.DictReader(file)
+    assert float(row["unstable_modes"]) == 1.0
+    assert np.log(2.0) / float(row["growth_rate"]) == pytest.approx(270.0, rel=2e-3)
+    assert float(row["period"]) == 0.0
+
+
+@pytest.mark.parametrize(("ratio", "depth", "words"), [
+    (1.0, 300.0, "at the limit of stability: a growth rate is nearly 0"),
+    (1.5, 14.0, "det(I - U') is negative: the state is unstable, an odd number of modes grows"),
+    (2.6, 14.0, "above 1: modes may grow, which *STABILITY counts")])
+def test_warnings_of_a_sliding_face_agree_with_its_modes(ratio, depth, words, tmp_path):
+    """One mode grows above the critical speed, two above twice that: det(I - U') is positive."""
+    printed = solved(tmp_path, half_plane(ratio, depth))[1]
+    assert words in printed
+    assert "branch" not in printed
+    assert "is ignored: no step stores heat" not in (tmp_path / "deck.lst").read_text()
 
 
 def test_analysis_changes_no_digit_of_the_run(tmp_path):
