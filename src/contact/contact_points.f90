@@ -97,9 +97,9 @@ module contact_points
    !> Smaller offsets are no coarser than the mesh itself, and far larger ones than those of rounded
    !> coordinates.
    real(dp), parameter :: small_offset = 0.05_dp
-   !> Part of its side by which the normal of a slave's node that follows sliding may miss the end of
-   !> the master. Where both faces end, what crosses at the node tilts its normal: were it open for
-   !> that, it would be so in every other solution.
+   !> Part of its side by which the normal of a slave's node that follows sliding may miss the end
+   !> of the master. Where both faces end, what crosses at the node tilts its normal: were it open
+   !> for that, it would be so in every other solution.
    real(dp), parameter :: end_reach = 0.01_dp
 
 contains
