@@ -571,6 +571,35 @@ def test_analysis_changes_no_digit_of_the_run(tmp_path):
                 np.testing.assert_array_equal(one[f"{group}/{name}"][:], two[f"{group}/{name}"][:])
 
 
+def test_ridges_of_hot_pellets_are_no_pattern(tmp_path):
+    """Pellets take the shape of an hour-glass: closed at their ends and about the middle."""
+    heights = np.linspace(0.0, 10.0, 7)
+    radii = np.linspace(0.0, 4.1, 5)
+    uranium = (2e5, 0.316), {"expansion": 1e-5, "conductivity": 3e-3}
+    cards = [*mesh("ONE", radii, heights, "CAX8"),
+             *mesh("TWO", radii, heights + 10.0, "CAX8", first=1001),
+             *mesh("TUBE", [4.12, 4.72], np.linspace(0.0, 30.0, 19), "CAX8", first=2001),
+             *material("ONE", uranium[0], **uranium[1]), *material("TWO", uranium[0], **uranium[1]),
+             *material("TUBE", (8e4, 0.34), 6e-6, 0.016),
+             "*INITIAL CONDITIONS, TYPE=TEMPERATURE", "ONE, 20.", "TWO, 20.", "TUBE, 20.",
+             "*SURFACE INTERACTION, NAME=HELIUM", "*FRICTION", "0.4", "*GAP LAW, TYPE=GAS",
+             "3e-4, 0.01", "*GAP LAW, TYPE=POWER", "0.03, 1e-3, 1.",
+             "*CONTACT PAIR, INTERACTION=HELIUM, NAME=LOW, PAIRING=SURFACES", "ONE.RIGHT, TUBE.LEFT",
+             "*CONTACT PAIR, INTERACTION=HELIUM, NAME=HIGH, PAIRING=SURFACES",
+             "TWO.RIGHT, TUBE.LEFT",
+             "*CONTACT PAIR, INTERACTION=HELIUM, NAME=END", "TWO.BOTTOM, ONE.TOP",
+             "*BOUNDARY", "ONE.LEFT, 1", "TWO.LEFT, 1", "ONE.BOTTOM, 2", "TUBE.BOTTOM, 2"]
+    for power in (0.0, 0.4734):
+        cards += ["*STEP", "*COUPLED TEMPERATURE-DISPLACEMENT, STEADY STATE", "0.25, 1.",
+                  "*SFILM", "TUBE.RIGHT, F, 300., 0.03", "*DSLOAD", "TWO.TOP, P, 2.",
+                  "*DFLUX", f"ONE, BF, {power!r}", f"TWO, BF, {power!r}", "*END STEP"]
+    result, printed = solved(tmp_path, cards, "--errors", "no")
+    with h5py.File(result) as file:
+        closed = file["contact/HIGH/status"][-1] > 0
+    assert closed.astype(int).tolist() == [1, 0, 0, 1, 0, 0, 1]
+    assert "alternate" not in printed
+
+
 def pattern(*cards):
     """Return the cards of two rods, three contact points wide, whose faces are uniform: there is
     one uniform solution, q = 41054.97, and patterns."""
