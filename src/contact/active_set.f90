@@ -164,7 +164,8 @@ contains
       do
          followed = count(follows)
          do i = 1, size(system%interface_start) - 1
-            associate (first => system%interface_start(i), last => system%interface_start(i + 1) - 1)
+            associate (first => system%interface_start(i), &
+               last => system%interface_start(i + 1) - 1)
                if (any(restless(first:last))) follows(first:last) = .true.
             end associate
          end do

@@ -3,10 +3,11 @@
 !> points of a *TIE, whose relative displacements and jumps of temperature are zero, are made alike.
 module contact_pairs
    use, intrinsic :: iso_fortran_env, only: real32
+   use chain_geometry, only: edge_lengths
    use contact_definitions, only: contact_definition_type, pairing_nodes, pairing_surfaces, &
       tie_definition_type
    use contact_pieces, only: join_pieces
-   use contact_points, only: contact_points_type, small_offset
+   use contact_points, only: contact_points_type, end_reach, small_offset
    use drawn_lines, only: drawn_line_type
    use element_kinds, only: axisymmetric
    use errors, only: error_type, set_error, status_deck
@@ -123,7 +124,9 @@ contains
          if (allocated(error)) return
          if (definition%pairing == pairing_nodes) then
             drawn = mesh
-            call opposite_line(drawing, slaves(i), points%about_axis, drawn, master)
+            call opposite_line(drawing, slaves(i), merge(end_reach, 0.0_dp, &
+               points%follows_sliding)*edge_lengths(mesh%coordinates(:, slaves(i)%nodes), &
+               slaves(i)%side_nodes, slaves(i)%closed), points%about_axis, drawn, master)
             call set_node_pairs(drawn, definition, slaves(i), master, thickness, pieces(i), error)
             if (allocated(error)) return
          else

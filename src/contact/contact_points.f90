@@ -8,8 +8,8 @@ module contact_points
    use sum_lists, only: sum_list_type
    implicit none
    private
-   public :: contact_row_type, contact_points_type, ends_of_pieces, join_rows, never_approached, &
-      no_radius, on_axis, small_offset
+   public :: contact_row_type, contact_points_type, end_reach, ends_of_pieces, join_rows, &
+      never_approached, no_radius, on_axis, small_offset
 
    real(dp), parameter :: no_radius = 1.0e-9_dp  !! part of the largest radius that counts as 0
    real(dp), parameter :: unmoved = 1.0e-9_dp    !! relative change of a gap that is rounding
@@ -97,6 +97,10 @@ module contact_points
    !> Smaller offsets are no coarser than the mesh itself, and far larger ones than those of rounded
    !> coordinates.
    real(dp), parameter :: small_offset = 0.05_dp
+   !> Part of its side by which the normal of a slave's node that follows sliding may miss the end
+   !> of the master. Where both faces end, what crosses at the node tilts its normal: were it open
+   !> for that, it would be so in every other solution.
+   real(dp), parameter :: end_reach = 0.01_dp
 
 contains
 

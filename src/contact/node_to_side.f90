@@ -6,7 +6,7 @@
 module node_to_side
    use chain_geometry, only: arc_lengths, side_positions
    use contact_definitions, only: contact_definition_type
-   use contact_points, only: contact_points_type
+   use contact_points, only: contact_points_type, end_reach
    use errors, only: error_type
    use kinds, only: dp
    use mesh, only: mesh_type
@@ -86,7 +86,7 @@ contains
             k = side(i)%nodes(q)
             if (allocated(foot(k)%nodes)) cycle
             xi = 2.0_dp*(q - 1)/(slave%side_nodes - 1) - 1.0_dp
-            opposite = opposite_at(side(i), xi)
+            opposite = opposite_near(side(i), xi)
             if (opposite == 0) cycle
             facing = side_positions(opposite, line%side_nodes, size(s))
             eta = 0.0_dp
@@ -101,6 +101,17 @@ contains
          end do
       end do
    end subroutine find_feet
+
+   !> Side of the master opposite a node of the slave, also one whose end its normal nearly meets; 0
+   !> for none.
+   pure integer function opposite_near(side, xi) result(opposite)
+      type(slave_side_type), intent(in) :: side   ! of the slave
+      real(dp), intent(in) :: xi                  ! the node's coordinate there
+
+      opposite = opposite_at(side, xi)
+      if (opposite == 0) opposite = opposite_at(side, max(xi - 2*end_reach, -1.0_dp))
+      if (opposite == 0) opposite = opposite_at(side, min(xi + 2*end_reach, 1.0_dp))
+   end function opposite_near
 
    pure function line_of(mesh, chain) result(line)
       type(mesh_type), intent(in) :: mesh

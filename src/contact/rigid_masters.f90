@@ -39,9 +39,10 @@ contains
    !> The points of the drawing that the normals of the slave's nodes meet, as master of node pairs,
    !> with the drawing's tangents, 0 where they meet none. The line goes on there at the distance of
    !> the nearest node with one, so that the weights of pairs do not depend on what it does beside.
-   pure subroutine opposite_line(drawing, slave, about_axis, mesh, master)
+   pure subroutine opposite_line(drawing, slave, reach, about_axis, mesh, master)
       type(drawn_line_type), intent(in) :: drawing
       type(surface_chain_type), intent(in) :: slave    !! from its first contact point on
+      real(dp), intent(in) :: reach(:)                 !! (n) by how much normals may miss its ends
       logical, intent(in) :: about_axis                !! whether x is a radius
       type(mesh_type), intent(inout) :: mesh           !! receives the nodes behind its own
       type(surface_chain_type), intent(out) :: master  !! runs as the slave does
@@ -63,7 +64,7 @@ contains
             if (about_axis .and. abs(from(1, k)) <= no_radius*maxval(abs(from(1, :)))) then
                normal(:, k) = [0.0_dp, sign(1.0_dp, normal(2, k))]
             end if
-            call drawing%find_met(from(:, k), normal(:, k), piece, t, ahead(k))
+            call drawing%find_met(from(:, k), normal(:, k), reach(k), piece, t, ahead(k))
             is_met(k) = piece > 0
             if (is_met(k)) then
                ! The drawing has its body on the left, and so have the faces of the slave: both run

@@ -267,26 +267,30 @@ contains
          if (.not. ieee_is_nan(record%coupling_gain_max)) then
             if (abs(record%coupling_gain_max - 1.0_dp) <= near_turning_point) call record%warn( &
                'the largest real gain is ', record%coupling_gain_max, &
-               ', near 1: a turning point, where solutions meet and small changes of the load '// &
-               'have large effects', severity=-abs(record%coupling_gain_max - 1.0_dp))
+               ', near 1: near a turning point or the limit of stability, where small changes '// &
+               'of the load have large effects', severity=-abs(record%coupling_gain_max - 1.0_dp))
          end if
          if (alternates(bodies, next)) call record%warn('closed and open contact points '// &
-            'alternate in a uniform face: a pattern, which is not the only solution; *START, '// &
-            'FROM=BOTH or FROM=GIVEN may find others')
+            'alternate in a uniform face: unless the shape of its bodies makes ridges so '// &
+            'near each other, a pattern, which is not the only solution; *START, FROM=BOTH or '// &
+            'FROM=GIVEN may find others')
          if (any(next%resting) .or. abs(gains%largest) >= 1.0_dp) then
             if (.not. is_negative) then
                if (record%coupling_gain_max > 1.0_dp + near_turning_point) call record%warn( &
-                  'the largest real gain is ', record%coupling_gain_max, ', above 1: the '// &
-                  'solution may be one of several; *START, FROM=BOTH tries others')
+                  'the largest real gain is ', record%coupling_gain_max, trim(merge( &
+                  ', above 1: modes may grow, which *STABILITY counts                           ', &
+                  ', above 1: the solution may be one of several; *START, FROM=BOTH tries others', &
+                  allocated(workspace%friction%heat))))
             else
                if (data%equation%duration > 0.0_dp) then
                   call record%warn('det(I - U'') is negative: the increment is too long to '// &
                      'show a mode that grows, the state does not last; take shorter increments')
                else if (allocated(workspace%friction%heat)) then
                   ! Heat of friction has no bound: the other solutions may be at infinity.
-                  call record%warn('det(I - U'') is negative: the branch is unstable')
+                  call record%warn('det(I - U'') is negative: the state is unstable, an odd '// &
+                     'number of modes grows')
                else
-                  call record%warn('det(I - U'') is negative: the branch is unstable, and '// &
+                  call record%warn('det(I - U'') is negative: the state is unstable, and '// &
                      'there are at least two other solutions')
                end if
             end if
@@ -295,7 +299,8 @@ contains
    end subroutine judge_solution
 
    !> Whether closed and open contact points alternate along a face whose gap is the same
-   !> everywhere: more than every other one differs from the one before.
+   !> everywhere: more than half of those between two others differ from both. Wider zones have
+   !> their reason in the bodies, as the ridges at both ends and the middle of a hot pellet.
    pure logical function alternates(bodies, next)
       type(reduced_bodies_type), intent(in) :: bodies
       type(solution_state_type), intent(in) :: next
@@ -312,7 +317,8 @@ contains
             end associate
             is_open = next%contact%contact_state(first:last) == contact_open
             associate (m => size(is_open))
-               alternates = alternates .or. 2*count(is_open(2:) .neqv. is_open(:m - 1)) > m
+               alternates = alternates .or. 2*count((is_open(2:m - 1) .neqv. is_open(:m - 2)) &
+                  .and. (is_open(2:m - 1) .neqv. is_open(3:))) > m - 2
             end associate
          end associate
       end do

@@ -136,14 +136,15 @@ contains
 
    !> The point that the normal of a face meets nearest to it, of those at which the line has its
    !> body behind it.
-   pure subroutine find_met(self, x, normal, piece, t, ahead)
+   pure subroutine find_met(self, x, normal, reach, piece, t, ahead)
       class(drawn_line_type), intent(in) :: self
       real(dp), intent(in) :: x(2)         !! where the normal starts [length]
       real(dp), intent(in) :: normal(2)    !! outward unit normal
+      real(dp), intent(in) :: reach        !! by how much it may miss the nearest end [length]
       integer, intent(out) :: piece        !! 0 where it meets none
       real(dp), intent(out) :: t
       real(dp), intent(out) :: ahead       !! how far from x, negative behind it [length]
-      real(dp) :: at(2), distance(2), tangent(2)
+      real(dp) :: at(2), beyond, distance(2), foot(2), tangent(2)
       integer :: i, k
 
       piece = 0
@@ -161,6 +162,15 @@ contains
             ahead = distance(k)
          end do
       end do
+      if (piece > 0) return
+      call self%find_nearest(x, i, at(1), foot, beyond)
+      associate (way => self%point(i, at(1)) - x)
+         if (abs(cross(normal, way)) >= reach .or. cross(normal, self%tangent(i, at(1))) >= &
+            0.0_dp) return
+         piece = i
+         t = at(1)
+         ahead = dot_product(normal, way)
+      end associate
    end subroutine find_met
 
    !> The two points at which a line meets a piece or what it is part of, a straight line or circle.

@@ -51,6 +51,11 @@ contains
          call document%close('}')
          call put_fields(document, row, summary, model)
          call put_bodies(document, row, summary, model)
+         if (allocated(summary%leading)) then
+            call row%put('unstable_modes', real(summary%unstable_modes, dp))
+            call row%put('growth_rate', summary%leading(1, 1))
+            call row%put('period', summary%leading(2, 1))
+         end if
       end if
       call document%close('}')
    end subroutine put_summary

@@ -73,6 +73,7 @@ module summary
       real(dp), allocatable, private :: pre_tension(:, :)
       character(:), allocatable :: stability       !! whether it lasts; or empty
       real(dp), allocatable :: leading(:, :)       !! as stability_record_type
+      integer :: unstable_modes = 0                !! where leading ones are known
       real(dp), allocatable :: load_factor         !! of a point of a branch
       !> Load factors of the folds so far; unallocated for none
       real(dp), allocatable, private :: folds(:)
@@ -108,6 +109,7 @@ contains
       if (allocated(self%leading)) deallocate (self%leading)
       if (allocated(record%stability)) then
          if (allocated(record%stability%leading)) self%leading = record%stability%leading
+         self%unstable_modes = record%stability%unstable_modes
       end if
       if (allocated(record%cycle)) self%cycle = record%cycle
       if (allocated(self%solid_time)) deallocate (self%solid_time)

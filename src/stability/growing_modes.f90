@@ -35,6 +35,7 @@ module growing_modes
    real(dp), parameter :: above = 1.5_dp       !! the fastest rate: where it is sought
    real(dp), parameter :: light = 0.5_dp       !! decay in a modulus, below which it may be growth
    real(dp), parameter :: neutral_part = 1.0e-8_dp   !! of the slowest conduction that is no growth
+   real(dp), parameter :: at_limit = 1.0e-2_dp !! from 1, a gain with which rounding hides the rest
    real(dp), parameter :: alike = 0.05_dp      !! relative difference of both fastest rates
    real(dp), parameter :: nearly_real = 1.0e-6_dp !! imaginary part of a rate that is none, relative
    real(dp), parameter :: full_turn = 8*atan(1.0_dp)
@@ -115,8 +116,13 @@ contains
       call find_fastest(simulation, motion, response, rates, neutral_part*slowest, &
          model%steps(record%step)%stability_modes, record)
       call response%release()
-      if (.not. is_known) call record%stability%add_doubt( &
-         'the projected bodies have no sound eigenvalues')
+      if (.not. is_known) then
+         if (abs(record%coupling_gain_max - 1.0_dp) < at_limit) then
+            call record%stability%add_doubt('at the limit of stability: a growth rate is nearly 0')
+         else
+            call record%stability%add_doubt('the growing modes could not be checked')
+         end if
+      end if
       if (bound < 1.0_dp) return
       if (is_sparse) then
          call record%stability%add_doubt('on a sparse tail nothing proves that no other motion '// &
@@ -271,9 +277,10 @@ contains
             ! Those that it finds are motions of the bodies themselves.
             found%unstable_modes = max(growing, found%unstable_modes)
          else if (growing > 0) then
-            if (minval(abs(projected - rates(fastest))) > alike*abs(rates(fastest))) then
-               call found%add_doubt('the rate of the projected bodies is another one')
-            end if
+            ! Beside the first rate of the projection the digits of a smaller one are rounding.
+            if (minval(abs(projected - rates(fastest))) > alike*max(abs(rates(fastest)), &
+               slower/neutral_part*neutral)) call found%add_doubt( &
+               'the growth rate could not be checked')
          end if
       end associate
    end subroutine find_fastest

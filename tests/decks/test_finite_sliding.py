@@ -94,6 +94,43 @@ def test_a_pad_of_a_pattern_slides_along_all_of_the_rail(tmp_path):
                        final(tmp_path, "names", cards), 1e-12)
 
 
+def flush(pair, kind, ends, short=0.0, rigid=False):
+    """Return a hot body across a gap of gas from a cold one that ends with it, but for `short`."""
+    own = {"expansion": 1e-5, "conductivity": 0.003, "density": 1e-5, "specific_heat": 300.0}
+    xs = [short, 0.5, 1.0, 1.5, 2.0 - short]
+    cold = [*mesh("COLD", xs, [-0.5, 0.0], kind), *material("COLD", (2e5, 0.3), **own),
+            "*INITIAL CONDITIONS, TYPE=TEMPERATURE", "COLD, 20."]
+    held = ["COLD.BOTTOM, 2", *(f"COLD.{end}, 1" for end in ends)]
+    hold = "COLD.BOTTOM, 11, 11, 20."
+    if rigid:
+        cold = ["*NODE, NSET=COLD", "1, 1., -1.", "*SURFACE, TYPE=SEGMENTS, NAME=COLD.TOP",
+                f"START, {short!r}, 0.", f"LINE, {xs[-1]!r}, 0.",
+                "*RIGID BODY, REF NODE=1, ANALYTICAL SURFACE=COLD.TOP",
+                "*INITIAL CONDITIONS, TYPE=TEMPERATURE", "COLD, 20."]
+        held, hold = ["COLD, 1, 2", "COLD, 6"], "COLD, 11, 11, 20."
+    return without_unused_surfaces([
+        *mesh("HOT", [0.0, 0.5, 1.0, 1.5, 2.0], [0.02, 0.52, 1.02], kind, first=1001), *cold,
+        *material("HOT", (2e5, 0.3), **own), "*INITIAL CONDITIONS, TYPE=TEMPERATURE", "HOT, 20.",
+        "*SURFACE INTERACTION, NAME=GAS", "*GAP LAW, TYPE=GAS", "3e-4, 0.01",
+        f"*CONTACT PAIR, INTERACTION=GAS, NAME=FACE{pair}", "HOT.BOTTOM, COLD.TOP",
+        "*BOUNDARY", "HOT.TOP, 2", *(f"HOT.{end}, 1" for end in ends), *held,
+        "*STEP", "*COUPLED TEMPERATURE-DISPLACEMENT, DIRECT", "5., 10.", "*DFLUX", "HOT, BF, 0.5",
+        "*BOUNDARY", hold, "*END STEP"])
+
+
+@pytest.mark.parametrize(("kind", "ends", "short", "rigid"), [
+    ("CPE8", ("LEFT", "RIGHT"), 0.0, False), ("CPE4", ("LEFT", "RIGHT"), 1e-5, False),
+    ("CPE4", ("LEFT",), 0.0, False), ("CPE8", ("LEFT", "RIGHT"), 1e-6, True)])
+def test_nodes_where_both_faces_end_stay_opposite(tmp_path, kind, ends, short, rigid):
+    """Gas cools a node where it has a master, which tilts its normal; strains are 2e-3."""
+    result, other = (final(tmp_path, name, flush(pair, kind, ends, short, rigid))
+                     for name, pair in (("slid", PAIRS[1]), ("drawn", ", PAIRING=SURFACES")))
+    np.testing.assert_allclose(result["heat_flux"][:: 2 if kind == "CPE8" else 1],
+                               other["heat_flux"], rtol=3e-3)
+    assert abs(result["temperature"] - other["temperature"]).max() < 2e-3 * other[
+        "temperature"].max()
+
+
 def test_tiny_strains_give_what_small_sliding_gives_where_the_pad_is_drawn(tmp_path):
     slid = final(tmp_path, "slid", sliding(0.37, scale=SCALE))
     drawn = final(tmp_path, "drawn", sliding(0, ", PAIRING=SURFACES", START + 0.37, SCALE))

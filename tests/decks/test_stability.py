@@ -1,6 +1,7 @@
 """Whether states last: growing small motions of rods, against dense eigenvalues of the rods in
 closed form, and what *STABILITY says where there is nothing to analyse."""
 
+import csv
 import re
 
 import h5py
@@ -549,6 +550,32 @@ def test_checks_may_name_what_is_found(tmp_path):
     solved(tmp_path, [*middle(), *check, f"growth_rate, , LAST, {2 * rate!r}, 1e-3"], status=4)
 
 
+def test_a_table_of_runs_has_the_fastest_mode(tmp_path):
+    """Of the middle state of the rods, whose only growing motion doubles in 270 s."""
+    deck = tmp_path / "deck.inp"
+    deck.write_text("\n".join(["*PARAMETER", "number = 1.", *middle()]) + "\n")
+    (tmp_path / "values.csv").write_text("number\n1.\n")
+    done = run("run", deck, "--quiet", "--table", tmp_path / "values.csv", "--out", tmp_path)
+    assert done.returncode == 0, done.stderr
+    with open(tmp_path / "deck.table.csv", newline="") as file:
+        (row,) = csv.DictReader(file)
+    assert float(row["unstable_modes"]) == 1.0
+    assert np.log(2.0) / float(row["growth_rate"]) == pytest.approx(270.0, rel=2e-3)
+    assert float(row["period"]) == 0.0
+
+
+@pytest.mark.parametrize(("ratio", "depth", "words"), [
+    (1.0, 300.0, "at the limit of stability: a growth rate is nearly 0"),
+    (1.5, 14.0, "det(I - U') is negative: the state is unstable, an odd number of modes grows"),
+    (2.6, 14.0, "above 1: modes may grow, which *STABILITY counts")])
+def test_warnings_of_a_sliding_face_agree_with_its_modes(ratio, depth, words, tmp_path):
+    """One mode grows above the critical speed, two above twice that: det(I - U') is positive."""
+    printed = solved(tmp_path, half_plane(ratio, depth))[1]
+    assert words in printed
+    assert "branch" not in printed
+    assert "is ignored: no step stores heat" not in (tmp_path / "deck.lst").read_text()
+
+
 def test_analysis_changes_no_digit_of_the_run(tmp_path):
     results = [solved(tmp_path, middle(stability=card, branch=2), name=name)[0]
                for card, name in (("*STABILITY", "with"), ("**", "without"))]
@@ -557,6 +584,35 @@ def test_analysis_changes_no_digit_of_the_run(tmp_path):
         for group in "history", "contact/FACE", "uncertainty/FACE":
             for name in two[group]:
                 np.testing.assert_array_equal(one[f"{group}/{name}"][:], two[f"{group}/{name}"][:])
+
+
+def test_ridges_of_hot_pellets_are_no_pattern(tmp_path):
+    """Pellets take the shape of an hour-glass: closed at their ends and about the middle."""
+    heights = np.linspace(0.0, 10.0, 7)
+    radii = np.linspace(0.0, 4.1, 5)
+    uranium = (2e5, 0.316), {"expansion": 1e-5, "conductivity": 3e-3}
+    cards = [*mesh("ONE", radii, heights, "CAX8"),
+             *mesh("TWO", radii, heights + 10.0, "CAX8", first=1001),
+             *mesh("TUBE", [4.12, 4.72], np.linspace(0.0, 30.0, 19), "CAX8", first=2001),
+             *material("ONE", uranium[0], **uranium[1]), *material("TWO", uranium[0], **uranium[1]),
+             *material("TUBE", (8e4, 0.34), 6e-6, 0.016),
+             "*INITIAL CONDITIONS, TYPE=TEMPERATURE", "ONE, 20.", "TWO, 20.", "TUBE, 20.",
+             "*SURFACE INTERACTION, NAME=HELIUM", "*FRICTION", "0.4", "*GAP LAW, TYPE=GAS",
+             "3e-4, 0.01", "*GAP LAW, TYPE=POWER", "0.03, 1e-3, 1.",
+             "*CONTACT PAIR, INTERACTION=HELIUM, NAME=LOW, PAIRING=SURFACES", "ONE.RIGHT, TUBE.LEFT",
+             "*CONTACT PAIR, INTERACTION=HELIUM, NAME=HIGH, PAIRING=SURFACES",
+             "TWO.RIGHT, TUBE.LEFT",
+             "*CONTACT PAIR, INTERACTION=HELIUM, NAME=END", "TWO.BOTTOM, ONE.TOP",
+             "*BOUNDARY", "ONE.LEFT, 1", "TWO.LEFT, 1", "ONE.BOTTOM, 2", "TUBE.BOTTOM, 2"]
+    for power in (0.0, 0.4734):
+        cards += ["*STEP", "*COUPLED TEMPERATURE-DISPLACEMENT, STEADY STATE", "0.25, 1.",
+                  "*SFILM", "TUBE.RIGHT, F, 300., 0.03", "*DSLOAD", "TWO.TOP, P, 2.",
+                  "*DFLUX", f"ONE, BF, {power!r}", f"TWO, BF, {power!r}", "*END STEP"]
+    result, printed = solved(tmp_path, cards, "--errors", "no")
+    with h5py.File(result) as file:
+        closed = file["contact/HIGH/status"][-1] > 0
+    assert closed.astype(int).tolist() == [1, 0, 0, 1, 0, 0, 1]
+    assert "alternate" not in printed
 
 
 def pattern(*cards):

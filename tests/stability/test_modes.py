@@ -30,6 +30,8 @@ is the number of motions that grow; the rate is that of the fastest, negative wh
 
 - Rates and periods agree with dense eigenvalues, closed forms and runs in time to 1e-3. No number
   of growing motions is wrong, at 796 states of two joints, either.
+- Rates of a sliding face, `half_plane` in tests/stability/test_modes.py: above Vcr = 2 m k (1 -
+  nu)/(mu alpha E) cos(m x) grows at ((sqrt(1 + 8 V/Vcr) - 1)^2/4 - 1) kappa m^2 (Burton).
 - The coupling gain U' tells only a part. Of several states those with U' > 1 are unstable, but a
   state may be the only one, with U' = 0, and still oscillate with growing amplitude; one with
   U' = -1000 may last.

@@ -189,8 +189,8 @@ contains
          call deck%note('a material without *EXPANSION: coefficient 0')
       end if
       if (any(deck%model%materials%has(of_specific_heat)) .and. .not. &
-         any(deck%model%steps%is_transient)) call deck%note('*SPECIFIC HEAT is ignored: no '// &
-         'step stores heat')
+         any(deck%model%steps%is_transient .or. deck%model%steps%stability_frequency > 0)) call &
+         deck%note('*SPECIFIC HEAT is ignored: no step stores heat')
       if (any(melts(deck%model%materials)) .and. .not. all(deck%model%steps%is_transient)) call &
          deck%note('*LATENT HEAT does nothing in steps that store no heat, such as step '// &
          to_text(findloc(deck%model%steps%is_transient, .false., dim=1)))

@@ -73,7 +73,8 @@ contains
                   of_step//'; draw the faces with their overlap'
             end if
             if (step%stability_frequency > 0) words = '*STABILITY'//of_step// &
-               ', which keeps contact points where they are'
+               ', which keeps contact points where they are; give the speed of a brake, out of '// &
+               'the plane, to *GAP HEAT GENERATION instead'
             if (step%continuation%is_on) words = '*CONTINUATION'//of_step// &
                ', whose branches keep contact points where they are'
             if (step%dilates) words = 'DILATATION=YES'//of_step// &
