@@ -46,7 +46,7 @@ contains
       !> (nodes) ranks in nested dissection, where they are known
       integer, allocatable, intent(in) :: node_rank(:)
       type(error_type), allocatable, intent(out) :: error
-      type(contact_system_type) :: fresh
+      type(contact_system_type) :: former, fresh
       character(:), allocatable :: words
 
       call self%release_tail()
@@ -58,6 +58,7 @@ contains
             error%message//'; '//words
          return
       end if
+      if (self%contact%schur%is_sparse()) former = self%contact
       self%contact = fresh
       associate (contact => self%contact, map => mechanical%map)
          contact%interface_start = points%interface_start
@@ -65,11 +66,12 @@ contains
          contact%tangent = merge(map%tail_index(map%introduced(2::2)), 0, map%acts(2::2))
          call move_alloc(self%schur%full, contact%schur%full)
          contact%schur%sparse = self%schur%sparse
-         call contact%schur%set_order()
+         contact%schur%order = self%schur%order
+         contact%schur%rank = self%schur%rank
          contact%own = contact%schur%diagonal()
          call set_motions(points, map, rigid, contact)
          call set_cycles(mechanical, points, contact)
-         if (contact%schur%is_sparse()) call contact%set_fronts(error)
+         if (contact%schur%is_sparse()) call contact%set_fronts(former, error)
       end associate
       self%contact%least_length = rounding*extent_of(model%mesh%coordinates)
    end subroutine reduce

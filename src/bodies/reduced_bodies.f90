@@ -79,6 +79,7 @@ module reduced_bodies
       procedure :: enter_step
       procedure :: follow_faces
       procedure :: displaced_by
+      procedure :: least_spacing
       procedure :: wear_to
       procedure :: movement
       procedure, private :: couples
@@ -310,6 +311,17 @@ contains
          end associate
       end do
    end function displaced_by
+
+   !> Least spacing of contact points that follow sliding.
+   pure real(dp) function least_spacing(self) result(least)
+      class(reduced_bodies_type), intent(in) :: self !! with faces that slide [length]
+      integer :: i
+
+      least = huge(least)
+      do i = 1, size(self%interfaces)
+         if (self%interfaces(i)%follows_sliding) least = min(least, minval(self%interfaces(i)%edge))
+      end do
+   end function least_spacing
 
    !> How far contact points that follow sliding move against their masters; against the first node
    !> of the master, or its reference node, where nothing is opposite.

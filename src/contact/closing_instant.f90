@@ -27,7 +27,8 @@
 !>
 !> Where the contact points that hold go on changing, every one that was closed on the way counts as
 !> one that holds. Then C stays, and only f can go on swinging; of each change half is made in the
-!> end.
+!> end. Where faces slide they count soon, and for all passes of the solution: pairs of states call
+!> for each other more often, and the conductances would swing with them.
 !>
 !> While all contact points keep their conditions, the instants follow the load. The row of a
 !> contact point that closes and sticks, r = (1 - f) (d_t - d_t,i) + a.lambda, has the derivative
@@ -50,6 +51,7 @@ module closing_instant
    integer, parameter :: most_passes = 60  !! passes over the closing laws
    !> of these, with the contact points holding that are closed
    integer, parameter :: free_passes = 10
+   integer, parameter :: free_placed = 3   !! of these where faces slide
    integer, parameter :: plain_passes = 15 !! of these, going all the way to the new laws
    integer, parameter :: few_halves = 8    !! halves of changes after which it shows if they end
    real(dp), parameter :: lasting = 0.1_dp !! part of the changes that is left then if they do not
@@ -123,13 +125,18 @@ contains
       type(closing_law_type), allocatable :: laws(:)
       logical :: holds(size(state%contact_state))
       real(dp) :: change, swing   ! of the last pass, of the last one before changes are halved
-      integer :: k, pass
+      integer :: free, k, pass
 
       if (.not. allocated(sticking%closing)) then
          sticking = work%another()
          sticking%closing = closing_law_type()
       end if
       holds = .false.
+      free = merge(free_placed, free_passes, work%same_slip > 0.0_dp)
+      if (sticking%goes_on_changing) then
+         holds = sticking%kept%holds
+         free = 0
+      end if
       swing = 0.0_dp
       do pass = 1, most_passes
          state%gap = previous%gap
@@ -138,7 +145,9 @@ contains
          call solve_contact(system, load, work, state, error)
          if (allocated(error)) return
          if (work%keeps_laws) exit
-         holds = state%contact_state /= contact_open .or. (holds .and. pass > free_passes)
+         holds = state%contact_state /= contact_open .or. (holds .and. pass > free)
+         sticking%goes_on_changing = sticking%goes_on_changing .or. (work%same_slip > 0.0_dp .and. &
+            any(holds .and. state%contact_state == contact_open))
          sticking%soft = work%soft
          laws = work%closing
          call find_laws(system, previous, state, holds, sticking, laws, error)
@@ -152,7 +161,7 @@ contains
                laws(k)%compliance = 0.5_dp*(laws(k)%compliance + work%closing(k)%compliance)
             end do
          end if
-         if (change <= work%gap_rounding(system, state)) exit
+         if (change <= max(work%same_slip, work%gap_rounding(system, state))) exit
          if (pass == plain_passes) swing = change
          work%keeps_laws = pass == plain_passes + few_halves .and. change > lasting*swing .or. &
             pass == most_passes

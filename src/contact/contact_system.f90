@@ -49,7 +49,7 @@ module contact_system
    use front_tree, only: front_tree_type, set_front_tree
    use kinds, only: dp
    use pressure_overclosure, only: pressure_overclosure_type
-   use sparse_matrix, only: sparse_matrix_type, triplet_list_type
+   use sparse_matrix, only: have_same_pattern, sparse_matrix_type, triplet_list_type
    use sum_lists, only: sum_list_type
    use tail_matrix, only: tail_matrix_type
    use tail_motions, only: tail_motions_type
@@ -209,10 +209,11 @@ contains
          size(state%contact_state))], shape(sought)), sought), system%link]
    end function rows_of
 
-   !> Sets the fronts of a sparse tail.
+   !> Sets the fronts of a sparse tail: those of a former one with the same unknowns and pattern.
    !> Error: METIS fails.
-   subroutine set_fronts(self, error)
+   subroutine set_fronts(self, former, error)
       class(contact_system_type), intent(inout) :: self
+      type(contact_system_type), intent(in) :: former         !! or an empty one
       type(error_type), allocatable, intent(out) :: error
       integer :: i, k
 
@@ -228,6 +229,13 @@ contains
             end do
          end do
       end associate
+      if (have_same_pattern(self%schur%sparse, former%schur%sparse)) then
+         if (all(self%interface_start == former%interface_start) .and. all(self%normal == &
+            former%normal) .and. all(self%tangent == former%tangent)) then
+            self%tree = former%tree
+            return
+         end if
+      end if
       call set_front_tree(joined_unknowns(self), self%tree, error)
    end subroutine set_fronts
 

@@ -47,6 +47,9 @@ module contact_workspace
       real(dp) :: hold = 0.0_dp
       type(closing_law_type), allocatable :: closing(:) !! (m) laws of closing contact points
       logical :: keeps_laws = .false.             !! they do not settle in this increment: they stay
+      !> Change of a slip by which laws that have settled still differ, beside rounding; above 0
+      !> where faces slide, whose places are known no better [length]
+      real(dp) :: same_slip = 0.0_dp
       !> (tail) relative displacements that unconstrained motions are least from
       real(dp), allocatable :: anchor(:)
       !> (tail, 2) displacements of the last solution on a sparse tail, and S times these
@@ -58,6 +61,7 @@ module contact_workspace
       logical, allocatable :: idle(:)  !! (m) closed contact points that carry nothing (idle_points)
       integer :: factorisations = 0               !! of active sets, so far
       type(kept_compliances_type) :: kept         !! where contact points that are closed hold
+      logical :: goes_on_changing = .false.       !! whether which ones do changes without end
       logical :: several = .false.                !! whether other states under the load are proven
       type(contact_factors_type) :: factors       !! of these rows
       integer, allocatable, private :: factored(:)   !! (m) state codes of the factors

@@ -53,6 +53,7 @@ module increment_data
       real(dp), allocatable :: omega_start(:)
       !> (m) laws of closing contact points that a solution on faces placed elsewhere had
       type(closing_law_type), allocatable :: closing_start(:)
+      real(dp) :: same_slip = 0.0_dp        !! as contact_workspace_type has it [length]
       type(field_load_type) :: heat         !! load of (3.4)
       type(field_load_type) :: force        !! load of (2.4)
       real(dp), allocatable :: held_jump(:) !! (m) jump where both temperatures are prescribed

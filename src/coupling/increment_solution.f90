@@ -402,6 +402,7 @@ contains
             work = contact_workspace_type(contact, loads%present_gaps(bodies%points), &
                bodies%laws%nodal_friction, bodies%laws%removed, overlap, bodies%points%weight)
             if (allocated(trial%data%closing_start)) work%closing = trial%data%closing_start
+            work%same_slip = trial%data%same_slip
          end if
          work%load_scale = max(maxval(abs(applied)), maxval(abs(thermal)))
          along = 0.0_dp

@@ -5,8 +5,8 @@ module sparse_matrix
    use kinds, only: dp
    implicit none
    private
-   public :: sparse_matrix_type, triplet_list_type, between_spaces, congruent, linear_combination, &
-      symmetric
+   public :: sparse_matrix_type, triplet_list_type, between_spaces, congruent, have_same_pattern, &
+      linear_combination, symmetric
 
    !> A matrix in compressed rows, columns ascending in each row.
    type :: sparse_matrix_type
@@ -18,6 +18,7 @@ module sparse_matrix
       !> Whether rows 1 and 2, 3 and 4, ... have the same columns, and these come in such pairs
       logical :: in_pairs = .false.
    contains
+      procedure :: graph
       procedure :: multiply
       procedure :: multiply_columns
       procedure :: multiply_transposed
@@ -184,7 +185,7 @@ contains
 
    !> Whether two matrices have entries in the same places, and any.
    pure logical function have_same_pattern(a, b) result(same)
-      type(sparse_matrix_type), intent(in) :: a, b
+      type(sparse_matrix_type), intent(in) :: a, b  !! without values for none
 
       same = allocated(a%value) .and. allocated(b%value)
       if (same) same = size(a%value) == size(b%value) .and. size(a%row_start) == size(b%row_start)
@@ -324,15 +325,52 @@ contains
    pure function symmetric(lower) result(matrix)
       type(sparse_matrix_type), intent(in) :: lower !! (n, n) lower triangle by rows
       type(sparse_matrix_type) :: matrix            !! (n, n)
-      integer :: i, k
+      type(sparse_matrix_type) :: upper
+      integer :: i, k, n
 
-      matrix = linear_combination(1.0_dp, lower, 1.0_dp, transposed(lower))
-      do i = 1, matrix%row_count
-         do k = matrix%row_start(i), matrix%row_start(i + 1) - 1
-            if (matrix%column(k) == i) matrix%value(k) = 0.5_dp*matrix%value(k)
+      upper = transposed(lower)
+      matrix = sparse_matrix_type(lower%row_count, lower%row_count)
+      n = 2*lower%row_start(lower%row_count + 1) - 2
+      allocate (matrix%row_start(lower%row_count + 1), matrix%column(n), matrix%value(n))
+      n = 0
+      matrix%row_start(1) = 1
+      do i = 1, lower%row_count
+         do k = lower%row_start(i), lower%row_start(i + 1) - 1
+            n = n + 1
+            matrix%column(n) = lower%column(k)
+            matrix%value(n) = lower%value(k)
          end do
+         do k = upper%row_start(i), upper%row_start(i + 1) - 1
+            if (upper%column(k) == i) cycle
+            n = n + 1
+            matrix%column(n) = upper%column(k)
+            matrix%value(n) = upper%value(k)
+         end do
+         matrix%row_start(i + 1) = n + 1
       end do
+      call resize(matrix, n)
    end function symmetric
+
+   !> Which rows of a symmetric matrix are joined: its pattern without the diagonal.
+   pure function graph(self)
+      class(sparse_matrix_type), intent(in) :: self !! both triangles
+      type(sparse_matrix_type) :: graph             !! the values mean nothing
+      logical, allocatable :: joins(:)
+      integer :: i
+
+      allocate (joins(size(self%column)))
+      graph = sparse_matrix_type(self%row_count, self%row_count)
+      allocate (graph%row_start(self%row_count + 1))
+      graph%row_start(1) = 1
+      do i = 1, self%row_count
+         associate (first => self%row_start(i), last => self%row_start(i + 1) - 1)
+            joins(first:last) = self%column(first:last) /= i
+            graph%row_start(i + 1) = graph%row_start(i) + count(joins(first:last))
+         end associate
+      end do
+      graph%column = pack(self%column, joins)
+      graph%value = pack(self%value, joins)
+   end function graph
 
    !> S^T A T.
    pure function between_spaces(s, a, t) result(c)

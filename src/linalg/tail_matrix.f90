@@ -4,7 +4,7 @@
 module tail_matrix
    use dense, only: product_of
    use kinds, only: dp
-   use ordering, only: adjacency, profile => first_rows, profile_order
+   use ordering, only: profile => first_rows, profile_order
    use sparse_matrix, only: sparse_matrix_type
    implicit none
    private
@@ -39,8 +39,7 @@ contains
 
       if (self%is_sparse()) then
          self%order = self%sparse%row_count
-         self%rank = behind_others(self, profile_order(adjacency(self%sparse, [(i, i=1, &
-            self%order)])))
+         self%rank = behind_others(self, profile_order(self%sparse%graph()))
       else
          self%order = size(self%full, 1)
          self%rank = [(i, i=1, self%order)]

@@ -39,6 +39,7 @@ module increment_attempts
 
    integer, parameter :: most_turns = 10   !! in which faces that slide or wear find their place
    real(dp), parameter :: same_place = 1.0e-6_dp     !! part of the spacing of contact points
+   real(dp), parameter :: same_law = 1.0e-12_dp      !! the same of a slip by laws of closing
    real(dp), parameter :: same_wear = 1.0e-9_dp      !! relative change of wear that is none
    !> Tolerance on conductances while faces are still where they were placed an increment earlier
    real(dp), parameter :: rough = 1.0e-4_dp
@@ -439,6 +440,7 @@ contains
          if (allocated(attempt%closing_start)) data%closing_start = attempt%closing_start
          if (allocated(attempt%wear_by_pressure)) data%wear_by_pressure = attempt%wear_by_pressure
          if (attempt%is_rough) data%fixed_point%tolerance = max(rough, data%fixed_point%tolerance)
+         if (allocated(bodies%faces_at)) data%same_slip = same_law*bodies%least_spacing()
          ! The last of several solutions is judged alone.
          data%fixed_point%finds_gain = data%fixed_point%finds_gain .and. .not. &
             solves_repeatedly(run)
