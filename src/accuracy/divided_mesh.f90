@@ -7,13 +7,12 @@
 module divided_mesh
    use companion_states, only: implicit_state, implicit_step
    use connections, only: connections_type
-   use contact_points, only: contact_points_type
    use contact_system, only: contact_open
    use controls, only: default_solver, method_anderson
    use element_kinds, only: element_node_count
    use equations, only: equation_nodes
    use errors, only: error_type
-   use field_recovery, only: error_record_type, point_map_type
+   use field_recovery, only: error_record_type
    use heat_equation, only: heat_across
    use heat_reduction, only: heat_reduction_type
    use increments, only: accept_increment, advance
@@ -41,7 +40,6 @@ module divided_mesh
 
    !> The divided model and its run.
    type :: divided_mesh_type
-      logical, allocatable :: is_divided(:)             !! (elements) once prepared
       type(model_type) :: model                         !! the divided one
       type(division_type) :: division
       !> Its increment to the end of the run's, with its interfaces, displacements, temperatures and
@@ -49,16 +47,13 @@ module divided_mesh
       type(increment_record_type) :: record
       !> Freed by release. Held by value, its copying, which nothing calls, would be most of the
       !> code of this module and of those that hold a divided mesh
-      type(simulation_type), pointer, private :: run => null()
-      type(solution_state_type), private :: initial     !! state before the first increment
+      type(simulation_type), pointer :: run => null()
       type(heat_reduction_type), private :: heat        !! where the films at the end are others
    contains
       procedure :: solve_end
       procedure :: begin
       procedure :: follow
       procedure :: exchange
-      procedure :: points
-      procedure :: interfaces
       procedure :: release
    end type divided_mesh_type
 
@@ -187,22 +182,6 @@ contains
       table%prefix = ''
    end subroutine exchange
 
-   !> The points of the divided mesh at which stress is averaged.
-   pure function points(self)
-      class(divided_mesh_type), intent(in) :: self
-      type(point_map_type) :: points
-
-      points = self%run%recovery%points
-   end function points
-
-   !> The contact points of every interface of the divided mesh.
-   pure subroutine interfaces(self, views)
-      class(divided_mesh_type), intent(in) :: self
-      type(contact_points_type), allocatable, intent(out) :: views(:)
-
-      call self%run%bodies%views(views)
-   end subroutine interfaces
-
    !> Frees the run with its factors.
    subroutine release(self)
       class(divided_mesh_type), intent(inout) :: self
@@ -245,22 +224,21 @@ contains
             of_heat)) .or. also
       end associate
       call choose_neighbours(model, chosen)
-      if (allocated(self%is_divided)) then
-         if (all(self%is_divided .eqv. chosen)) return
+      if (associated(self%run)) then
+         if (all((self%division%rank > 0) .eqv. chosen)) return
       end if
       call self%release()
       call divide_elements(self, model, chosen)
       self%heat = fresh_heat
       call self%run%bodies%prepare(self%model, error)
       if (allocated(error)) then
-         deallocate (self%is_divided)
+         call self%release()
          return
       end if
       self%run%heat_reductions(1)%forms_on_demand = .not. allocated(self%run%bodies%points%heated)
       self%heat%forms_on_demand = self%run%heat_reductions(1)%forms_on_demand
       call self%run%loads%prepare(self%model)
-      self%initial = make_initial_state(self%model, self%run%bodies)
-      self%run%state = self%initial
+      self%run%state = make_initial_state(self%model, self%run%bodies)
    end subroutine divide_at_contact
 
    !> Makes the model with some elements divided, for a fresh run.
@@ -269,7 +247,6 @@ contains
       type(model_type), intent(in) :: model
       logical, intent(in) :: chosen(:)                    ! (elements) as choose_neighbours asks
 
-      self%is_divided = chosen
       self%model = model
       self%division = divide(model%mesh, chosen)
       call divide_model(self%model, self%division)
@@ -286,24 +263,15 @@ contains
       type(connections_type), intent(in) :: points
       logical, intent(in) :: counts(:)                    ! (m) closed, or with much heat
       logical :: chosen(size(model%mesh%element_number))
+      integer, allocatable :: counted(:)
       integer :: k
 
       chosen = elements_at_surfaces(model%mesh, [model%contacts%slave, model%contacts%master])
-      if (any(counts)) chosen = chosen .and. elements_about(model%mesh, &
-         nodes_at(pack([(k, k=1, size(counts))], counts)))
+      counted = pack([(k, k=1, size(counts))], counts)
+      if (size(counted) > 0) chosen = chosen .and. elements_about(model%mesh, &
+         [(points%nodes_of(counted(k)), k=1, size(counted))])
       if (size(model%ties) > 0) chosen = chosen .or. elements_at_surfaces(model%mesh, &
          [model%ties%faces%slave, model%ties%faces%master])
-
-   contains
-
-      pure function nodes_at(closed) result(nodes)
-         integer, intent(in) :: closed(:)
-         integer, allocatable :: nodes(:)
-         integer :: i
-
-         nodes = [(points%nodes_of(closed(i)), i=1, size(closed))]
-      end function nodes_at
-
    end function elements_at_contact
 
    !> Prescribes what all nodes of a side or element have prescribed at the new nodes on it, too:
@@ -440,7 +408,7 @@ contains
       type(solution_state_type) :: divided
       integer, allocatable :: nearest(:)
 
-      divided = self%initial
+      divided = make_initial_state(self%model, self%run%bodies)
       ! Partners of new nodes with axes of their own come last; nothing is taken of what they have.
       associate (n => self%division%nodes_after)
          divided%temperature(:n) = self%division%prolong(state%temperature, 1)

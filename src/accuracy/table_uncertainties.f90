@@ -51,7 +51,7 @@ contains
             model)) return
       end associate
       call simulation%bodies%views(points)
-      call divided%interfaces(finer)
+      call divided%run%bodies%views(finer)
       allocate (record%contact_uncertainties(size(points)))
       do i = 1, size(points)
          record%contact_uncertainties(i) = points_of(points(i), record%contacts(i), finer(i), &

@@ -21,13 +21,14 @@ module no_estimates
    integer, parameter, public :: not_on_finer_mesh = 9, no_finer_value = 10
    integer, parameter, public :: of_sliding = 11   !! of contact points that follow sliding: of_path
    integer, parameter, public :: of_points = 12    !! single nodes or points, not on both meshes
-   integer, parameter, public :: reason_count = 12
+   integer, parameter, public :: of_axis = 13      !! of a peak pressure, one mesh does not tell it
+   integer, parameter, public :: reason_count = 13
 
    character(*), parameter :: words(reason_count) = [character(32) :: 'branches', 'ERRORS=NO', &
       'slides beyond its contact points', 'not unique', 'at a corner', &
       'peak grows with the mesh', 'path; ERRORS=FULL', 'inside a step; ERRORS=FULL', &
       'no solution on a finer mesh', 'not there on a finer mesh', 'SLIDING=FINITE; ERRORS=FULL', &
-      'single points']
+      'single points', 'axis']
 
 contains
 
