@@ -88,20 +88,18 @@ contains
          guess%sources%load = run%loads%heat_load()
          guess%sources%film = run%loads%film_matrix()
          guess%force_load = run%loads%nodal_forces()
-         step = implicit_step(self%model%steps(number))
-         if (run%heat_reductions(1)%forms_on_demand) step%fixed_point%method = method_anderson
-         next = guess
-         call implicit_state(run, self%heat, self%model, step, before, next, error)
-         if (allocated(error) .and. run%heat_reductions(1)%forms_on_demand .and. &
-            run%bodies%is_coupled) then
+         do
+            step = implicit_step(self%model%steps(number))
+            if (run%heat_reductions(1)%forms_on_demand) step%fixed_point%method = method_anderson
+            next = guess
+            call implicit_state(run, self%heat, self%model, step, before, next, error)
+            if (.not. (allocated(error) .and. run%heat_reductions(1)%forms_on_demand .and. &
+               run%bodies%is_coupled)) exit
             run%heat_reductions(1)%forms_on_demand = .false.
             self%heat%forms_on_demand = .false.
-            step = implicit_step(self%model%steps(number))
-            next = guess
             call run%reduce(self%model, error)
-            if (.not. allocated(error)) call implicit_state(run, self%heat, self%model, step, &
-               before, next, error)
-         end if
+            if (allocated(error)) exit
+         end do
          if (allocated(error)) return
          call contacts_of_state(run%bodies, next, self%record%contacts)
          self%record%fields = field_record_type(temperature=next%temperature)
@@ -206,7 +204,7 @@ contains
          state%history, self%record%fields%inelastic_strain)
    end subroutine recover_stress
 
-   !> Divides the elements at the contact and some more, and prepares what solving ends of steps
+   !> Divides the elements at the contact, at ties and some more, and prepares what solving ends of steps
    !> takes of a run, unless that is done.
    !> Errors: as reduced_bodies' prepare.
    subroutine divide_at_contact(self, simulation, model, also, error)
@@ -217,12 +215,21 @@ contains
       type(error_type), allocatable, intent(out) :: error
       type(heat_reduction_type) :: fresh_heat
       logical :: chosen(size(model%mesh%element_number))
+      integer, allocatable :: counted(:)
+      integer :: k
 
+      chosen = elements_at_surfaces(model%mesh, [model%contacts%slave, model%contacts%master])
+      ! Contact points that are closed, or with much heat; all of the faces where there is none.
       associate (points => simulation%bodies%points, state => simulation%state)
-         chosen = elements_at_contact(model, points, state%contact%contact_state /= contact_open &
-            .or. largest_part(abs(heat_across(points%weight, state%flux_conductance, state%jump)), &
-            of_heat)) .or. also
+         counted = pack([(k, k=1, size(points%slave))], state%contact%contact_state /= &
+            contact_open .or. largest_part(abs(heat_across(points%weight, &
+            state%flux_conductance, state%jump)), of_heat))
+         if (size(counted) > 0) chosen = chosen .and. elements_about(model%mesh, &
+            [(points%nodes_of(counted(k)), k=1, size(counted))])
       end associate
+      if (size(model%ties) > 0) chosen = chosen .or. elements_at_surfaces(model%mesh, &
+         [model%ties%faces%slave, model%ties%faces%master])
+      chosen = chosen .or. also
       call choose_neighbours(model, chosen)
       if (associated(self%run)) then
          if (all((self%division%rank > 0) .eqv. chosen)) return
@@ -257,70 +264,41 @@ contains
       allocate (self%run)
    end subroutine divide_elements
 
-   !> Elements at the contact points that count, and at ties; all of the faces where none counts.
-   pure function elements_at_contact(model, points, counts) result(chosen)
-      type(model_type), intent(in) :: model
-      type(connections_type), intent(in) :: points
-      logical, intent(in) :: counts(:)                    ! (m) closed, or with much heat
-      logical :: chosen(size(model%mesh%element_number))
-      integer, allocatable :: counted(:)
-      integer :: k
-
-      chosen = elements_at_surfaces(model%mesh, [model%contacts%slave, model%contacts%master])
-      counted = pack([(k, k=1, size(counts))], counts)
-      if (size(counted) > 0) chosen = chosen .and. elements_about(model%mesh, &
-         [(points%nodes_of(counted(k)), k=1, size(counted))])
-      if (size(model%ties) > 0) chosen = chosen .or. elements_at_surfaces(model%mesh, &
-         [model%ties%faces%slave, model%ties%faces%master])
-   end function elements_at_contact
-
    !> Prescribes what all nodes of a side or element have prescribed at the new nodes on it, too:
    !> the deck may name nodes one by one.
    subroutine hold_new_nodes(division, model)
       type(division_type), intent(in) :: division
       type(model_type), intent(inout) :: model            ! the divided one
       type(boundary_type), allocatable :: given(:)
-      real(dp) :: values(division%nodes)
-      logical :: is_member(division%nodes)
+      type(boundary_type) :: support
+      real(dp) :: value(division%nodes_after), values(division%nodes)
+      logical :: is_held(division%nodes_after), is_member(division%nodes)
       logical, allocatable :: is_like(:), waits(:)
-      integer :: first, s
+      integer :: node, s
 
       do s = 1, size(model%steps)
          given = model%steps(s)%boundaries
          values = 0.0_dp
          waits = given%node <= division%nodes
          do while (any(waits))
-            first = findloc(waits, .true., dim=1)
-            is_like = waits .and. given%dof == given(first)%dof .and. &
-               given%amplitude == given(first)%amplitude
+            support = given(findloc(waits, .true., dim=1))
+            is_like = waits .and. given%dof == support%dof .and. given%amplitude == &
+               support%amplitude
             waits = waits .and. .not. is_like
             is_member = .false.
             is_member(pack(given%node, is_like)) = .true.
             values(pack(given%node, is_like)) = pack(given%value, is_like)
-            call add(given(first))
+            is_held = refined_members(division, is_member)
+            value = division%weights%multiply(merge(values, 0.0_dp, is_member))
+            do node = division%nodes + 1, division%nodes_after
+               if (.not. is_held(node) .or. any(given%node == node .and. given%dof == &
+                  support%dof)) cycle
+               support%node = node
+               support%value = value(node)
+               model%steps(s)%boundaries = [model%steps(s)%boundaries, support]
+            end do
          end do
       end do
-
-   contains
-
-      subroutine add(like)
-         type(boundary_type), intent(in) :: like
-         type(boundary_type) :: support
-         logical :: is_held(division%nodes_after)
-         real(dp) :: value(division%nodes_after)
-         integer :: node
-
-         is_held = refined_members(division, is_member)
-         value = division%weights%multiply(merge(values, 0.0_dp, is_member))
-         support = like
-         do node = division%nodes + 1, division%nodes_after
-            if (.not. is_held(node) .or. any(given%node == node .and. given%dof == like%dof)) cycle
-            support%node = node
-            support%value = value(node)
-            model%steps(s)%boundaries = [model%steps(s)%boundaries, support]
-         end do
-      end subroutine add
-
    end subroutine hold_new_nodes
 
    !> Sides whose nodes the deck's equations name, but for such as supports hold, stay as they are,
@@ -406,7 +384,7 @@ contains
       type(connections_type), intent(in) :: points  !! of the run
       type(solution_state_type), intent(in) :: state
       type(solution_state_type) :: divided
-      integer, allocatable :: nearest(:)
+      integer :: first, i, k, last, nearest(size(self%run%bodies%points%slave))
 
       divided = make_initial_state(self%model, self%run%bodies)
       ! Partners of new nodes with axes of their own come last; nothing is taken of what they have.
@@ -418,7 +396,17 @@ contains
       divided%has_mechanics = .true.
       divided%increment_size = state%increment_size
       associate (fine => self%run%bodies%points, contact => divided%contact)
-         nearest = nearest_points(self, points)
+         ! The nearest contact point of the run.
+         do i = 1, size(fine%interface_start) - 1
+            first = points%interface_start(i)
+            last = points%interface_start(i + 1) - 1
+            associate (x => self%model%mesh%coordinates)
+               do k = fine%interface_start(i), fine%interface_start(i + 1) - 1
+                  nearest(k) = first - 1 + minloc(norm2(x(:, points%slave(first:last)) - &
+                     spread(x(:, fine%slave(k)), 2, last - first + 1), dim=1), dim=1)
+               end do
+            end associate
+         end do
          contact%contact_state = state%contact%contact_state(nearest)
          contact%direction = state%contact%direction(nearest)
          associate (relative => fine%relative(divided%displacement))
@@ -434,24 +422,5 @@ contains
          divided%jump = fine%jumps(divided%temperature)
       end associate
    end function prolonged
-
-   !> The contact point of the run that is nearest to each one of the divided mesh.
-   pure function nearest_points(self, points) result(nearest)
-      type(divided_mesh_type), intent(in) :: self
-      type(connections_type), intent(in) :: points
-      integer :: nearest(size(self%run%bodies%points%slave))
-      integer :: first, i, k, last
-
-      associate (row => self%run%bodies%points, x => self%model%mesh%coordinates)
-         do i = 1, size(row%interface_start) - 1
-            first = points%interface_start(i)
-            last = points%interface_start(i + 1) - 1
-            do k = row%interface_start(i), row%interface_start(i + 1) - 1
-               nearest(k) = first - 1 + minloc(norm2(x(:, points%slave(first:last)) - &
-                  spread(x(:, row%slave(k)), 2, last - first + 1), dim=1), dim=1)
-            end do
-         end do
-      end associate
-   end function nearest_points
 
 end module divided_mesh

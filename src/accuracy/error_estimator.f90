@@ -204,9 +204,10 @@ contains
       type(contact_points_type) :: points
       type(contact_points_type), allocatable :: finer(:)
       logical :: holds(reason_count), is_at_corner
-      integer :: i, q
+      integer :: i, q, start(size(values, 2) + 1)
 
       allocate (record%uncertainties(size(record%contacts)))
+      start = simulation%bodies%points%interface_start
       other = values
       if (record%last_of_step .and. .not. model%steps(record%step)%is_transient) call &
          find_other_states(simulation, model, record%step, self%before, other)
@@ -233,8 +234,8 @@ contains
             if (.not. ieee_is_nan(other(q, i) - values(q, i))) holds(not_unique) = &
                abs(other(q, i) - values(q, i)) > same*abs(values(q, i))
             holds(at_corner) = estimated(q)%name == 'peak_pressure' .and. is_at_corner
-            holds(of_path) = estimated(q)%follows_path .and. .not. self%is_full .and. &
-               has_friction(simulation, i)
+            holds(of_path) = estimated(q)%follows_path .and. .not. self%is_full .and. any( &
+               simulation%bodies%laws%friction(start(i):start(i + 1) - 1)%coefficient > 0.0_dp)
             call settle(self, record%uncertainties(i), q, estimated(q), change(q), holds, &
                [scatter(q), spacing_at(estimated(q), points, values(q, i))])
             if (holds(not_unique)) call append(record%notes, trim(estimated(q)%name)//' of '// &
@@ -244,18 +245,6 @@ contains
          end do
       end do
    end subroutine judge_interfaces
-
-   !> Whether the contact points of an interface have friction.
-   pure logical function has_friction(simulation, interface)
-      type(simulation_type), intent(in) :: simulation
-      integer, intent(in) :: interface
-
-      associate (start => simulation%bodies%points%interface_start, &
-         friction => simulation%bodies%laws%friction)
-         has_friction = any(friction(start(interface):start(interface + 1) - 1)%coefficient > &
-            0.0_dp)
-      end associate
-   end function has_friction
 
    !> Uncertainties of the maxima of bodies.
    subroutine judge_bodies(self, model, simulation, found, record)

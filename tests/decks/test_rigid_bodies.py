@@ -104,10 +104,10 @@ def test_pressure_of_linear_elements_on_the_axis_has_the_second_order(tmp_path, 
 def test_a_requested_peak_on_the_axis_of_linear_elements_is_within_its_uncertainty(tmp_path, kind, pairing):
     """One change of it may be small by chance: no round is the first and the last."""
     force, peak, _ = hertz("CAX8", 1000.0, 1.0)
-    deck = write(tmp_path / "deck.inp", roller(kind, force, pairing, 1000.0, 400.0, 2))
-    with h5py.File(solve_as_written(deck, "--accuracy", "pressure=2%")) as file:
+    deck = write(tmp_path / "deck.inp", roller(kind, force, pairing, 1000.0, 400.0, 1))
+    with h5py.File(solve_as_written(deck, "--accuracy", "pressure=5%")) as file:
         value, uncertainty = file["uncertainty/FACE/peak_pressure"][-1, :2]
-        assert abs(value - peak) <= uncertainty <= 0.02 * peak and len(file["accuracy/elements"]) > 1
+        assert abs(value - peak) <= uncertainty <= 0.05 * peak and len(file["accuracy/elements"]) > 1
 
 
 PLATE = ["*NODE", "9001, 0.5, 3.25", "9002, 2., 3.", "9003, 0., 3.", "9004, -2., 3."]
