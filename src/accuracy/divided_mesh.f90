@@ -204,8 +204,8 @@ contains
          state%history, self%record%fields%inelastic_strain)
    end subroutine recover_stress
 
-   !> Divides the elements at the contact, at ties and some more, and prepares what solving ends of steps
-   !> takes of a run, unless that is done.
+   !> Divides the elements at the contact, at ties and some more, and prepares what solving ends of
+   !> steps takes of a run, unless that is done.
    !> Errors: as reduced_bodies' prepare.
    subroutine divide_at_contact(self, simulation, model, also, error)
       type(divided_mesh_type), intent(inout) :: self

@@ -109,8 +109,8 @@ contains
       integer :: k
 
       spacing = 0.0_dp
-      if (quantity%resolution <= 0.0_dp .or. ieee_is_nan(edge) .or. size(points%arc_length) < 2) &
-         return
+      if (quantity%resolution <= 0.0_dp .or. ieee_is_nan(edge)) return
+      if (size(points%arc_length) < 2) return
       associate (s => points%arc_length)
          k = point_before(s, edge)
          if (.not. points%on_one_piece(k, k + 1)) return
