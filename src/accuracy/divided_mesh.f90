@@ -9,7 +9,6 @@ module divided_mesh
    use connections, only: connections_type
    use contact_system, only: contact_open
    use controls, only: default_solver, method_anderson
-   use element_kinds, only: element_node_count
    use equations, only: equation_nodes
    use errors, only: error_type
    use field_recovery, only: error_record_type

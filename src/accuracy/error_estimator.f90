@@ -13,15 +13,15 @@ module error_estimator
    use element_kinds, only: element_corner_count
    use errors, only: error_type
    use field_quantities, only: maxima
-   use field_recovery, only: error_record_type, point_map_type
+   use field_recovery, only: error_record_type
    use increment_quantities, only: history_estimated, history_value
-   use interface_quantities, only: peaks_at_corner, quantities_of, spacing_at
+   use interface_quantities, only: peaks_at_axis, peaks_at_corner, quantities_of, spacing_at
    use kinds, only: dp
    use local_refinement, only: elements_about, largest_part
    use mesh, only: mesh_type
    use model, only: model_type, uncertainty_full, verify_type
    use no_estimates, only: at_corner, first_reason, no_finer_value, no_reason, not_on_finer_mesh, &
-      not_unique, of_path, of_step, reason_count, reason_of_run, slides_far
+      not_unique, of_axis, of_path, of_step, reason_count, reason_of_run, slides_far
    use quantity_histories, only: quantity_histories_type
    use quantity_types, only: find_quantity, of_nodes, quantity_type
    use records, only: increment_record_type, uncertainty_type
@@ -234,6 +234,8 @@ contains
             if (.not. ieee_is_nan(other(q, i) - values(q, i))) holds(not_unique) = &
                abs(other(q, i) - values(q, i)) > same*abs(values(q, i))
             holds(at_corner) = estimated(q)%name == 'peak_pressure' .and. is_at_corner
+            holds(of_axis) = estimated(q)%name == 'peak_pressure' .and. &
+               peaks_at_axis(points, record%contacts(i))
             holds(of_path) = estimated(q)%follows_path .and. .not. self%is_full .and. any( &
                simulation%bodies%laws%friction(start(i):start(i + 1) - 1)%coefficient > 0.0_dp)
             call settle(self, record%uncertainties(i), q, estimated(q), change(q), holds, &
@@ -443,8 +445,8 @@ contains
       if (present(beside)) others = beside
       parts = uncertainty_parts(quantity, change, others(1), others(2), &
          self%iteration*own%value(q))
-      if (own%no_estimate(q) == of_path .and. .not. ieee_is_nan(sum(parts))) own%at_end(q) = &
-         sum(parts)
+      if (any(own%no_estimate(q) == [of_axis, of_path]) .and. .not. ieee_is_nan(sum(parts))) &
+         own%at_end(q) = sum(parts)
       if (own%no_estimate(q) /= no_reason) return
       own%change(q) = parts(1)
       own%scatter(q) = parts(2)

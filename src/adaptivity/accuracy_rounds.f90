@@ -6,17 +6,16 @@
 !> divides both faces, and the last two changes from round to round tell it by the same rule: one
 !> change can be small by chance. Of a peak pressure with friction the last increment tells a part,
 !> by which meshes are refined; the change from the round before, which has the path in it, adds the
-!> rest. So it does to one near the axis on sides of two nodes, where both have to be small. A
-!> pressure that has no limit has none whatever the changes are; where it is at a corner, no round
-!> is spent on it.
+!> rest, also to one near the axis on sides of two nodes, where both have to be small. A pressure
+!> that has no limit has none whatever the changes are; where it is at a corner, no round is spent
+!> on it.
 module accuracy_rounds
    use, intrinsic :: ieee_arithmetic, only: ieee_is_nan, ieee_quiet_nan, ieee_value
    use accuracy_targets, only: accuracy_request_type
    use contact_definitions, only: brings_friction
    use contact_points, only: contact_points_type
    use contact_quantities, only: contact_values, end_words, estimated
-   use interface_quantities, only: contact_width, is_end_of_face, peak_is_at_end, peaks_at_axis, &
-      spacing_at
+   use interface_quantities, only: contact_width, is_end_of_face, peak_is_at_end, spacing_at
    use kinds, only: dp
    use model, only: model_type
    use no_estimates, only: at_corner, grows, no_reason, of_axis, of_path, of_sliding, &
@@ -197,12 +196,6 @@ contains
                   finding%nodes = [points%slave(peak), points%master(peak)]
                   if (has_grown(self%rounds, d, record%step) .and. .not. &
                      remains(finding%no_estimate)) finding%no_estimate = grows
-                  if (peaks_at_axis(points, contact) .and. .not. ieee_is_nan( &
-                     finding%uncertainty)) then
-                     finding%at_end = finding%uncertainty
-                     finding%uncertainty = ieee_value(1.0_dp, ieee_quiet_nan)
-                     finding%no_estimate = of_axis
-                  end if
                end if
             end associate
             call add_change(self%rounds, quantity, d, record)
@@ -223,8 +216,7 @@ contains
             if (.not. finding%is_there) cycle
             errors%total(q) = finding%uncertainty
             errors%no_estimate(q) = finding%no_estimate
-            if (ieee_is_nan(finding%uncertainty) .or. (.not. ieee_is_nan(errors%change(q)) .and. &
-               finding%at_end <= 0.0_dp)) cycle
+            if (ieee_is_nan(finding%uncertainty) .or. .not. ieee_is_nan(errors%change(q))) cycle
             ! The rounds tell it.
             errors%scatter(q) = estimated(q)%resolution*finding%spacing
             errors%change(q) = errors%total(q) - errors%scatter(q)

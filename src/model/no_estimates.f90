@@ -21,7 +21,7 @@ module no_estimates
    integer, parameter, public :: not_on_finer_mesh = 9, no_finer_value = 10
    integer, parameter, public :: of_sliding = 11   !! of contact points that follow sliding: of_path
    integer, parameter, public :: of_points = 12    !! single nodes or points, not on both meshes
-   integer, parameter, public :: of_axis = 13      !! of a peak pressure, one mesh does not tell it
+   integer, parameter, public :: of_axis = 13      !! of a peak pressure there on linear elements
    integer, parameter, public :: reason_count = 13
 
    character(*), parameter :: words(reason_count) = [character(32) :: 'branches', 'ERRORS=NO', &

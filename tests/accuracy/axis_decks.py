@@ -1,8 +1,8 @@
-"""Peak pressures on the axis under a rigid ball, on linear elements: decks whose radius, size, load, material, mesh
-and pairing are drawn, against CAX8 on a fine mesh.
+"""Requested peak pressures on the axis under a rigid ball, on linear elements: decks whose radius, size, load, material,
+mesh, pairing and request are drawn, against CAX8 on a fine mesh.
 
-`python tests/accuracy/axis_decks.py FIRST LAST KIND...` prints for each seed and setting error, uncertainty and their
-ratio. Seeds from 1000 on judge; no constant was chosen on any of them.
+`python tests/accuracy/axis_decks.py FIRST LAST KIND...` prints for each seed error, uncertainty and their ratio. Seeds
+from 1000 on judge; no constant was chosen on any of them.
 """
 
 import sys
@@ -17,8 +17,7 @@ from drawn_decks import log_uniform
 from judged_decks import estimate
 from physics import material, mesh
 
-FINE = 64                                              # elements along the fine part of the reference
-SETTINGS = {"LAST": ["--errors", "last"], "FULL": ["--errors", "full"]}
+FINE = 64   # elements along the fine part of the reference
 
 
 def corners(spacing, count, end, growth):
@@ -54,23 +53,21 @@ def ball(seed, kind=None):
 
 
 def peak_of(text, options, folder):
-    """Return the peak pressure of a deck, its uncertainty, and the number of rounds."""
+    """Return the peak pressure of a deck, its uncertainty, and why it has none."""
     deck = folder / "ball.inp"
     deck.write_text(text)
     process = run("run", "--quiet", deck, "--out", folder, *options)
     assert process.returncode in (0, 4), process.stderr
     with h5py.File(deck.with_suffix(".vtkhdf")) as file:
-        value, uncertainty, _ = estimate(file, "FACE", "peak_pressure")
-        return value, uncertainty, len(file["accuracy/elements"]) if "accuracy/elements" in file else 0
+        return estimate(file, "FACE", "peak_pressure")
 
 
 def judged(seed, kind, folder):
-    """Return error and uncertainty, relative to the true peak, for each setting."""
+    """Return error and uncertainty of a request, relative to the true peak."""
     request = f"{np.random.default_rng([seed, 5]).choice([2, 1, 0.5])}%"
-    true = peak_of(ball(seed), SETTINGS["LAST"], folder)[0]
-    found = {name: peak_of(ball(seed, kind), options, folder)
-             for name, options in (SETTINGS | {request: ["--accuracy", request]}).items()}
-    return {name: (value / true - 1, uncertainty / true, rounds) for name, (value, uncertainty, rounds) in found.items()}
+    true = peak_of(ball(seed), [], folder)[0]
+    value, uncertainty, _ = peak_of(ball(seed, kind), ["--accuracy", request], folder)
+    return value / true - 1, uncertainty / true
 
 
 def main(first, last, *kinds):
@@ -78,8 +75,8 @@ def main(first, last, *kinds):
     with TemporaryDirectory() as folder:
         for seed in range(int(first), int(last)):
             for kind in kinds:
-                for name, (error, uncertainty, _) in judged(seed, kind, Path(folder)).items():
-                    print(seed, kind, name, f"{error:.5f} {uncertainty:.5f} {abs(error) / uncertainty:.2f}", flush=True)
+                error, uncertainty = judged(seed, kind, Path(folder))
+                print(seed, kind, f"{error:.5f} {uncertainty:.5f} {abs(error) / uncertainty:.2f}", flush=True)
 
 
 if __name__ == "__main__":
