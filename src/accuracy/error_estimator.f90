@@ -445,8 +445,9 @@ contains
       if (present(beside)) others = beside
       parts = uncertainty_parts(quantity, change, others(1), others(2), &
          self%iteration*own%value(q))
-      if (any(own%no_estimate(q) == [of_axis, of_path]) .and. .not. ieee_is_nan(sum(parts))) &
+      if (any(own%no_estimate(q) == [of_axis, of_path]) .and. .not. ieee_is_nan(sum(parts))) then
          own%at_end(q) = sum(parts)
+      end if
       if (own%no_estimate(q) /= no_reason) return
       own%change(q) = parts(1)
       own%scatter(q) = parts(2)

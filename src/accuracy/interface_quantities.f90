@@ -159,15 +159,15 @@ contains
    end function peaks_at_corner
 
    !> Whether the pressure of sides of two nodes is largest within two of them from the axis, where
-   !> their errors on two meshes may be alike by chance.
+   !> errors of two orders may cancel on a mesh.
    pure logical function peaks_at_axis(points, contact)
       type(contact_points_type), intent(in) :: points     !! contact points of the interface
       type(contact_record_type), intent(in) :: contact    !! its state
       integer :: k, peak
 
       peak = maxloc(contact%pressure, dim=1)
-      peaks_at_axis = points%side_nodes == 2 .and. any(on_axis(points, [(k, k=max(1, peak - 2), &
-         min(size(contact%pressure), peak + 2))]))
+      peaks_at_axis = (points%side_nodes - 1)*points%node_spacings == 1 .and. any(on_axis(points, &
+         [(k, k=max(1, peak - 2), min(size(contact%pressure), peak + 2))]))
    end function peaks_at_axis
 
    !> Whether the pressure is largest at an end of a piece and rises to it beyond the line through

@@ -11,6 +11,8 @@ def test_a_requested_peak_on_the_axis_is_within_its_uncertainty(tmp_path):
 
 
 def test_one_finer_mesh_tells_no_peak_on_the_axis_of_linear_elements(tmp_path):
-    for kind, reason in (("CAX4", "axis"), ("CAX3", "axis"), ("CAX8", "")):
-        _, uncertainty, why = peak_of(ball(1000, kind), [], tmp_path)
-        assert why == reason and np.isnan(uncertainty) == bool(reason)
+    for kind, pairing, reason in (("CAX4", "NODES", "axis"), ("CAX3", "SURFACES", "axis"), ("CAX8", "NODES", ""),
+                                  ("CAX8", "SURFACES", "")):
+        text = ball(1000, kind).replace("PAIRING=NODES", f"PAIRING={pairing}")
+        _, uncertainty, why = peak_of(text, [], tmp_path)
+        assert f"PAIRING={pairing}" in text and why == reason and np.isnan(uncertainty) == bool(reason)
