@@ -74,7 +74,7 @@ contains
       real(dp), allocatable :: before(:), after(:)
       integer :: b, e, n, q
 
-      fine = divided%points()
+      fine = divided%run%recovery%points
       change = 0.0_dp
       do q = 1, size(maxima)
          before = point_values(trim(maxima(q)%name), fields, points%node)
@@ -110,9 +110,8 @@ contains
       integer :: after(element_node_count(mesh%element_kind(e)))
       integer :: child, k, part, place
 
-      do child = 1, merge(4, 1, divided%is_divided(e))
-         part = e
-         if (divided%is_divided(e)) part = child_element(divided%division, e, child)
+      do child = 1, merge(4, 1, divided%division%rank(e) > 0)
+         part = child_element(divided%division, e, child)
          do k = 1, size(after)
             place = findloc(divided%model%mesh%element_nodes(:, part), mesh%element_nodes(k, e), &
                dim=1)
@@ -183,7 +182,7 @@ contains
       type(point_map_type), intent(in) :: points          ! of stress
       type(field_record_type), intent(in) :: fields
       real(dp), allocatable :: values(:)
-      integer :: e, n, q
+      integer :: e, k, n, q
 
       allocate (self%node(size(maxima), mesh%body_count), source=0)
       allocate (self%value(size(maxima), mesh%body_count))
@@ -194,24 +193,15 @@ contains
             if (.not. self%counts(q, e)) cycle
             n = element_node_count(mesh%element_kind(e))
             associate (places => points%element_points(:n, e))
-               call take(self, q, mesh%element_body(e), points%node(places), values(places))
+               k = places(maxloc(values(places), dim=1))
+            end associate
+            associate (b => mesh%element_body(e))
+               if (values(k) <= self%value(q, b)) cycle
+               self%value(q, b) = values(k)
+               self%node(q, b) = points%node(k)
             end associate
          end do
       end do
    end subroutine find_places
-
-   !> Keeps the largest value at some nodes of a body where it exceeds what was found.
-   pure subroutine take(self, q, body, nodes, values)
-      class(body_maxima_type), intent(inout) :: self
-      integer, intent(in) :: q, body
-      integer, intent(in) :: nodes(:)            ! (n)
-      real(dp), intent(in) :: values(:)          ! (n)
-      integer :: k
-
-      k = maxloc(values, dim=1)
-      if (values(k) <= self%value(q, body)) return
-      self%value(q, body) = values(k)
-      self%node(q, body) = nodes(k)
-   end subroutine take
 
 end module body_maxima

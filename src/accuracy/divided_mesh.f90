@@ -7,13 +7,11 @@
 module divided_mesh
    use companion_states, only: implicit_state, implicit_step
    use connections, only: connections_type
-   use contact_points, only: contact_points_type
    use contact_system, only: contact_open
    use controls, only: default_solver, method_anderson
-   use element_kinds, only: element_node_count
    use equations, only: equation_nodes
    use errors, only: error_type
-   use field_recovery, only: error_record_type, point_map_type
+   use field_recovery, only: error_record_type
    use heat_equation, only: heat_across
    use heat_reduction, only: heat_reduction_type
    use increments, only: accept_increment, advance
@@ -41,7 +39,6 @@ module divided_mesh
 
    !> The divided model and its run.
    type :: divided_mesh_type
-      logical, allocatable :: is_divided(:)             !! (elements) once prepared
       type(model_type) :: model                         !! the divided one
       type(division_type) :: division
       !> Its increment to the end of the run's, with its interfaces, displacements, temperatures and
@@ -49,16 +46,13 @@ module divided_mesh
       type(increment_record_type) :: record
       !> Freed by release. Held by value, its copying, which nothing calls, would be most of the
       !> code of this module and of those that hold a divided mesh
-      type(simulation_type), pointer, private :: run => null()
-      type(solution_state_type), private :: initial     !! state before the first increment
+      type(simulation_type), pointer :: run => null()
       type(heat_reduction_type), private :: heat        !! where the films at the end are others
    contains
       procedure :: solve_end
       procedure :: begin
       procedure :: follow
       procedure :: exchange
-      procedure :: points
-      procedure :: interfaces
       procedure :: release
    end type divided_mesh_type
 
@@ -93,20 +87,18 @@ contains
          guess%sources%load = run%loads%heat_load()
          guess%sources%film = run%loads%film_matrix()
          guess%force_load = run%loads%nodal_forces()
-         step = implicit_step(self%model%steps(number))
-         if (run%heat_reductions(1)%forms_on_demand) step%fixed_point%method = method_anderson
-         next = guess
-         call implicit_state(run, self%heat, self%model, step, before, next, error)
-         if (allocated(error) .and. run%heat_reductions(1)%forms_on_demand .and. &
-            run%bodies%is_coupled) then
+         do
+            step = implicit_step(self%model%steps(number))
+            if (run%heat_reductions(1)%forms_on_demand) step%fixed_point%method = method_anderson
+            next = guess
+            call implicit_state(run, self%heat, self%model, step, before, next, error)
+            if (.not. (allocated(error) .and. run%heat_reductions(1)%forms_on_demand .and. &
+               run%bodies%is_coupled)) exit
             run%heat_reductions(1)%forms_on_demand = .false.
             self%heat%forms_on_demand = .false.
-            step = implicit_step(self%model%steps(number))
-            next = guess
             call run%reduce(self%model, error)
-            if (.not. allocated(error)) call implicit_state(run, self%heat, self%model, step, &
-               before, next, error)
-         end if
+            if (allocated(error)) exit
+         end do
          if (allocated(error)) return
          call contacts_of_state(run%bodies, next, self%record%contacts)
          self%record%fields = field_record_type(temperature=next%temperature)
@@ -187,22 +179,6 @@ contains
       table%prefix = ''
    end subroutine exchange
 
-   !> The points of the divided mesh at which stress is averaged.
-   pure function points(self)
-      class(divided_mesh_type), intent(in) :: self
-      type(point_map_type) :: points
-
-      points = self%run%recovery%points
-   end function points
-
-   !> The contact points of every interface of the divided mesh.
-   pure subroutine interfaces(self, views)
-      class(divided_mesh_type), intent(in) :: self
-      type(contact_points_type), allocatable, intent(out) :: views(:)
-
-      call self%run%bodies%views(views)
-   end subroutine interfaces
-
    !> Frees the run with its factors.
    subroutine release(self)
       class(divided_mesh_type), intent(inout) :: self
@@ -227,8 +203,8 @@ contains
          state%history, self%record%fields%inelastic_strain)
    end subroutine recover_stress
 
-   !> Divides the elements at the contact and some more, and prepares what solving ends of steps
-   !> takes of a run, unless that is done.
+   !> Divides the elements at the contact, at ties and some more, and prepares what solving ends of
+   !> steps takes of a run, unless that is done.
    !> Errors: as reduced_bodies' prepare.
    subroutine divide_at_contact(self, simulation, model, also, error)
       type(divided_mesh_type), intent(inout) :: self
@@ -238,29 +214,37 @@ contains
       type(error_type), allocatable, intent(out) :: error
       type(heat_reduction_type) :: fresh_heat
       logical :: chosen(size(model%mesh%element_number))
+      integer, allocatable :: counted(:)
+      integer :: k
 
+      chosen = elements_at_surfaces(model%mesh, [model%contacts%slave, model%contacts%master])
+      ! Contact points that are closed, or with much heat; all of the faces where there is none.
       associate (points => simulation%bodies%points, state => simulation%state)
-         chosen = elements_at_contact(model, points, state%contact%contact_state /= contact_open &
-            .or. largest_part(abs(heat_across(points%weight, state%flux_conductance, state%jump)), &
-            of_heat)) .or. also
+         counted = pack([(k, k=1, size(points%slave))], state%contact%contact_state /= &
+            contact_open .or. largest_part(abs(heat_across(points%weight, &
+            state%flux_conductance, state%jump)), of_heat))
+         if (size(counted) > 0) chosen = chosen .and. elements_about(model%mesh, &
+            [(points%nodes_of(counted(k)), k=1, size(counted))])
       end associate
+      if (size(model%ties) > 0) chosen = chosen .or. elements_at_surfaces(model%mesh, &
+         [model%ties%faces%slave, model%ties%faces%master])
+      chosen = chosen .or. also
       call choose_neighbours(model, chosen)
-      if (allocated(self%is_divided)) then
-         if (all(self%is_divided .eqv. chosen)) return
+      if (associated(self%run)) then
+         if (all((self%division%rank > 0) .eqv. chosen)) return
       end if
       call self%release()
       call divide_elements(self, model, chosen)
       self%heat = fresh_heat
       call self%run%bodies%prepare(self%model, error)
       if (allocated(error)) then
-         deallocate (self%is_divided)
+         call self%release()
          return
       end if
       self%run%heat_reductions(1)%forms_on_demand = .not. allocated(self%run%bodies%points%heated)
       self%heat%forms_on_demand = self%run%heat_reductions(1)%forms_on_demand
       call self%run%loads%prepare(self%model)
-      self%initial = make_initial_state(self%model, self%run%bodies)
-      self%run%state = self%initial
+      self%run%state = make_initial_state(self%model, self%run%bodies)
    end subroutine divide_at_contact
 
    !> Makes the model with some elements divided, for a fresh run.
@@ -269,7 +253,6 @@ contains
       type(model_type), intent(in) :: model
       logical, intent(in) :: chosen(:)                    ! (elements) as choose_neighbours asks
 
-      self%is_divided = chosen
       self%model = model
       self%division = divide(model%mesh, chosen)
       call divide_model(self%model, self%division)
@@ -280,79 +263,41 @@ contains
       allocate (self%run)
    end subroutine divide_elements
 
-   !> Elements at the contact points that count, and at ties; all of the faces where none counts.
-   pure function elements_at_contact(model, points, counts) result(chosen)
-      type(model_type), intent(in) :: model
-      type(connections_type), intent(in) :: points
-      logical, intent(in) :: counts(:)                    ! (m) closed, or with much heat
-      logical :: chosen(size(model%mesh%element_number))
-      integer :: k
-
-      chosen = elements_at_surfaces(model%mesh, [model%contacts%slave, model%contacts%master])
-      if (any(counts)) chosen = chosen .and. elements_about(model%mesh, &
-         nodes_at(pack([(k, k=1, size(counts))], counts)))
-      if (size(model%ties) > 0) chosen = chosen .or. elements_at_surfaces(model%mesh, &
-         [model%ties%faces%slave, model%ties%faces%master])
-
-   contains
-
-      pure function nodes_at(closed) result(nodes)
-         integer, intent(in) :: closed(:)
-         integer, allocatable :: nodes(:)
-         integer :: i
-
-         nodes = [(points%nodes_of(closed(i)), i=1, size(closed))]
-      end function nodes_at
-
-   end function elements_at_contact
-
    !> Prescribes what all nodes of a side or element have prescribed at the new nodes on it, too:
    !> the deck may name nodes one by one.
    subroutine hold_new_nodes(division, model)
       type(division_type), intent(in) :: division
       type(model_type), intent(inout) :: model            ! the divided one
       type(boundary_type), allocatable :: given(:)
-      real(dp) :: values(division%nodes)
-      logical :: is_member(division%nodes)
+      type(boundary_type) :: support
+      real(dp) :: value(division%nodes_after), values(division%nodes)
+      logical :: is_held(division%nodes_after), is_member(division%nodes)
       logical, allocatable :: is_like(:), waits(:)
-      integer :: first, s
+      integer :: node, s
 
       do s = 1, size(model%steps)
          given = model%steps(s)%boundaries
          values = 0.0_dp
          waits = given%node <= division%nodes
          do while (any(waits))
-            first = findloc(waits, .true., dim=1)
-            is_like = waits .and. given%dof == given(first)%dof .and. &
-               given%amplitude == given(first)%amplitude
+            support = given(findloc(waits, .true., dim=1))
+            is_like = waits .and. given%dof == support%dof .and. given%amplitude == &
+               support%amplitude
             waits = waits .and. .not. is_like
             is_member = .false.
             is_member(pack(given%node, is_like)) = .true.
             values(pack(given%node, is_like)) = pack(given%value, is_like)
-            call add(given(first))
+            is_held = refined_members(division, is_member)
+            value = division%weights%multiply(merge(values, 0.0_dp, is_member))
+            do node = division%nodes + 1, division%nodes_after
+               if (.not. is_held(node) .or. any(given%node == node .and. given%dof == &
+                  support%dof)) cycle
+               support%node = node
+               support%value = value(node)
+               model%steps(s)%boundaries = [model%steps(s)%boundaries, support]
+            end do
          end do
       end do
-
-   contains
-
-      subroutine add(like)
-         type(boundary_type), intent(in) :: like
-         type(boundary_type) :: support
-         logical :: is_held(division%nodes_after)
-         real(dp) :: value(division%nodes_after)
-         integer :: node
-
-         is_held = refined_members(division, is_member)
-         value = division%weights%multiply(merge(values, 0.0_dp, is_member))
-         support = like
-         do node = division%nodes + 1, division%nodes_after
-            if (.not. is_held(node) .or. any(given%node == node .and. given%dof == like%dof)) cycle
-            support%node = node
-            support%value = value(node)
-            model%steps(s)%boundaries = [model%steps(s)%boundaries, support]
-         end do
-      end subroutine add
-
    end subroutine hold_new_nodes
 
    !> Sides whose nodes the deck's equations name, but for such as supports hold, stay as they are,
@@ -438,9 +383,9 @@ contains
       type(connections_type), intent(in) :: points  !! of the run
       type(solution_state_type), intent(in) :: state
       type(solution_state_type) :: divided
-      integer, allocatable :: nearest(:)
+      integer :: first, i, k, last, nearest(size(self%run%bodies%points%slave))
 
-      divided = self%initial
+      divided = make_initial_state(self%model, self%run%bodies)
       ! Partners of new nodes with axes of their own come last; nothing is taken of what they have.
       associate (n => self%division%nodes_after)
          divided%temperature(:n) = self%division%prolong(state%temperature, 1)
@@ -450,7 +395,17 @@ contains
       divided%has_mechanics = .true.
       divided%increment_size = state%increment_size
       associate (fine => self%run%bodies%points, contact => divided%contact)
-         nearest = nearest_points(self, points)
+         ! The nearest contact point of the run.
+         do i = 1, size(fine%interface_start) - 1
+            first = points%interface_start(i)
+            last = points%interface_start(i + 1) - 1
+            associate (x => self%model%mesh%coordinates)
+               do k = fine%interface_start(i), fine%interface_start(i + 1) - 1
+                  nearest(k) = first - 1 + minloc(norm2(x(:, points%slave(first:last)) - &
+                     spread(x(:, fine%slave(k)), 2, last - first + 1), dim=1), dim=1)
+               end do
+            end associate
+         end do
          contact%contact_state = state%contact%contact_state(nearest)
          contact%direction = state%contact%direction(nearest)
          associate (relative => fine%relative(divided%displacement))
@@ -466,24 +421,5 @@ contains
          divided%jump = fine%jumps(divided%temperature)
       end associate
    end function prolonged
-
-   !> The contact point of the run that is nearest to each one of the divided mesh.
-   pure function nearest_points(self, points) result(nearest)
-      type(divided_mesh_type), intent(in) :: self
-      type(connections_type), intent(in) :: points
-      integer :: nearest(size(self%run%bodies%points%slave))
-      integer :: first, i, k, last
-
-      associate (row => self%run%bodies%points, x => self%model%mesh%coordinates)
-         do i = 1, size(row%interface_start) - 1
-            first = points%interface_start(i)
-            last = points%interface_start(i + 1) - 1
-            do k = row%interface_start(i), row%interface_start(i + 1) - 1
-               nearest(k) = first - 1 + minloc(norm2(x(:, points%slave(first:last)) - &
-                  spread(x(:, row%slave(k)), 2, last - first + 1), dim=1), dim=1)
-            end do
-         end do
-      end associate
-   end function nearest_points
 
 end module divided_mesh

@@ -5,6 +5,7 @@ module error_estimator
    use, intrinsic :: ieee_arithmetic, only: ieee_is_nan, ieee_quiet_nan, ieee_value
    use body_maxima, only: body_maxima_type
    use checked_values, only: is_estimable, values_asked_for, worst_of
+   use companion_states, only: find_other_states
    use contact_points, only: contact_points_type
    use contact_quantities, only: estimated
    use divided_mesh, only: divided_mesh_type
@@ -12,16 +13,15 @@ module error_estimator
    use element_kinds, only: element_corner_count
    use errors, only: error_type
    use field_quantities, only: maxima
-   use field_recovery, only: error_record_type, point_map_type
+   use field_recovery, only: error_record_type
    use increment_quantities, only: history_estimated, history_value
-   use interface_quantities, only: peaks_at_corner, quantities_of, spacing_at
+   use interface_quantities, only: peaks_at_axis, peaks_at_corner, quantities_of, spacing_at
    use kinds, only: dp
    use local_refinement, only: elements_about, largest_part
    use mesh, only: mesh_type
    use model, only: model_type, uncertainty_full, verify_type
    use no_estimates, only: at_corner, first_reason, no_finer_value, no_reason, not_on_finer_mesh, &
-      not_unique, of_path, of_step, reason_count, reason_of_run, slides_far
-   use other_states, only: find_other_states
+      not_unique, of_axis, of_path, of_step, reason_count, reason_of_run, slides_far
    use quantity_histories, only: quantity_histories_type
    use quantity_types, only: find_quantity, of_nodes, quantity_type
    use records, only: increment_record_type, uncertainty_type
@@ -52,6 +52,7 @@ module error_estimator
       type(solution_state_type) :: before          !! state before the present increment
       type(quantity_histories_type) :: histories   !! quantities at the increments before
       integer :: step = 0                          !! step of the present increment
+      real(dp) :: iteration = 0.0_dp               !! what its fixed point has left, relative
       logical :: is_on = .false.                   !! whether there is anything to estimate
       logical :: is_full = .false.                 !! whether the divided mesh follows the run
       character(:), allocatable :: lost            !! why there is no finer run; else unallocated
@@ -94,14 +95,19 @@ contains
       type(increment_record_type), intent(inout) :: record
       real(dp) :: values(size(estimated), size(record%contacts))
       type(body_maxima_type) :: found
-      real(dp) :: iteration
       integer :: i
 
       do i = 1, size(record%contacts)
          values(:, i) = quantities_of(record%contacts(i))
       end do
       if (.not. self%is_on) then
-         if (record%last_of_step) call go_without(values, reason_of_run(model), record)
+         if (.not. record%last_of_step) return
+         allocate (record%uncertainties(size(record%contacts)), record%body_uncertainties(0))
+         do i = 1, size(record%contacts)
+            call clear(record%uncertainties(i), values(:, i))
+            where (.not. ieee_is_nan(values(:, i))) record%uncertainties(i)%no_estimate = &
+               reason_of_run(model)
+         end do
          return
       end if
       if (record%step /= self%step) then
@@ -112,13 +118,13 @@ contains
       if (.not. (self%is_full .or. record%last_of_step)) return
       call found%find(model, simulation, record)
       call solve_finer(self, model, simulation, record, found)
-      iteration = left_by_iteration(record)
-      call judge_interfaces(self, model, simulation, values, iteration, record)
-      call judge_bodies(self, model, simulation, found, iteration, record)
-      call judge_checks(self, model, simulation, found, iteration, record)
-      if (self%is_full) call judge_history(self, iteration, record)
+      self%iteration = left_by_iteration(record)
+      call judge_interfaces(self, model, simulation, values, record)
+      call judge_bodies(self, model, simulation, found, record)
+      call judge_checks(self, model, simulation, found, record)
+      if (self%is_full) call judge_history(self, record)
       if (self%is_full .and. .not. allocated(self%lost)) call find_table_uncertainties( &
-         self%divided, simulation, model, iteration, record)
+         self%divided, simulation, model, self%iteration, record)
    end subroutine end_increment
 
    !> Solves the finer mesh at the end of the increment.
@@ -158,7 +164,8 @@ contains
       nodes = pack(found%node, found%node > 0)
       do i = 1, size(model%verifications)
          associate (check => model%verifications(i))
-            if (kind_of(check) /= of_nodes .or. .not. is_judged(check, record, model)) cycle
+            if (verifiable(find_quantity(verifiable, check%quantity))%kind /= of_nodes .or. &
+               .not. is_judged(check, record, model)) cycle
             call read_integer(check%where, number, is_number)
             if (is_number) nodes = [nodes, findloc(model%mesh%node_number, number, dim=1)]
          end associate
@@ -171,60 +178,41 @@ contains
       type(mesh_type), intent(in) :: mesh
       type(increment_record_type), intent(in) :: record
       logical :: chosen(size(mesh%element_kind))
+      real(dp) :: error(size(chosen), 2)
+      integer :: b, k
 
+      error(:, 1) = errors_of(mesh, record%stress_error)
+      error(:, 2) = errors_of(mesh, record%heat_flux_error)
       chosen = .false.
-      call add(record%stress_error)
-      call add(record%heat_flux_error)
-   contains
-      subroutine add(estimate)
-         type(error_record_type), intent(in) :: estimate
-         real(dp) :: error(size(chosen))
-         integer :: b
-
-         error = 0.0_dp
-         call add_errors(mesh, estimate, error)
+      do k = 1, 2
          do b = 1, mesh%body_count
-            chosen = chosen .or. largest_part(merge(error, 0.0_dp, mesh%element_body == b), &
+            chosen = chosen .or. largest_part(merge(error(:, k), 0.0_dp, mesh%element_body == b), &
                divided_part)
          end do
-      end subroutine add
+      end do
    end function err_most
 
-   !> The quantities at the end of a step in a run that estimates nothing, and why.
-   subroutine go_without(values, reason, record)
-      real(dp), intent(in) :: values(:, :)                   ! (quantities, interfaces)
-      integer, intent(in) :: reason
-      type(increment_record_type), intent(inout) :: record
-      integer :: i
-
-      allocate (record%uncertainties(size(record%contacts)), record%body_uncertainties(0))
-      do i = 1, size(record%contacts)
-         call clear(record%uncertainties(i), values(:, i))
-         where (.not. ieee_is_nan(values(:, i))) record%uncertainties(i)%no_estimate = reason
-      end do
-   end subroutine go_without
-
    !> Uncertainties of the quantities of interfaces.
-   subroutine judge_interfaces(self, model, simulation, values, iteration, record)
+   subroutine judge_interfaces(self, model, simulation, values, record)
       type(error_estimator_type), intent(inout) :: self
       type(model_type), intent(in) :: model
       type(simulation_type), intent(in) :: simulation
       real(dp), intent(in) :: values(:, :)                   ! (quantities, interfaces)
-      real(dp), intent(in) :: iteration                      ! relative
       type(increment_record_type), intent(inout) :: record
       real(dp) :: other(size(values, 1), size(values, 2)), fine(size(values, 1)), &
          change(size(values, 1)), largest(size(values, 1)), scatter(size(values, 1))
       type(contact_points_type) :: points
       type(contact_points_type), allocatable :: finer(:)
       logical :: holds(reason_count), is_at_corner
-      integer :: i, q
+      integer :: i, q, start(size(values, 2) + 1)
 
       allocate (record%uncertainties(size(record%contacts)))
+      start = simulation%bodies%points%interface_start
       other = values
       if (record%last_of_step .and. .not. model%steps(record%step)%is_transient) call &
          find_other_states(simulation, model, record%step, self%before, other)
       fine = ieee_value(1.0_dp, ieee_quiet_nan)
-      if (.not. allocated(self%lost)) call self%divided%interfaces(finer)
+      if (.not. allocated(self%lost)) call self%divided%run%bodies%views(finer)
       do i = 1, size(record%contacts)
          call clear(record%uncertainties(i), values(:, i))
          call simulation%bodies%view(i, points)
@@ -246,11 +234,12 @@ contains
             if (.not. ieee_is_nan(other(q, i) - values(q, i))) holds(not_unique) = &
                abs(other(q, i) - values(q, i)) > same*abs(values(q, i))
             holds(at_corner) = estimated(q)%name == 'peak_pressure' .and. is_at_corner
-            holds(of_path) = estimated(q)%follows_path .and. .not. self%is_full .and. &
-               has_friction(simulation, i)
-            call settle(record%uncertainties(i), q, reason_of(self, holds, fine(q)), &
-               uncertainty_parts(estimated(q), change(q), scatter(q), &
-               spacing_at(estimated(q), points, values(q, i)), iteration*values(q, i)))
+            holds(of_axis) = estimated(q)%name == 'peak_pressure' .and. &
+               peaks_at_axis(points, record%contacts(i))
+            holds(of_path) = estimated(q)%follows_path .and. .not. self%is_full .and. any( &
+               simulation%bodies%laws%friction(start(i):start(i + 1) - 1)%coefficient > 0.0_dp)
+            call settle(self, record%uncertainties(i), q, estimated(q), change(q), holds, &
+               [scatter(q), spacing_at(estimated(q), points, values(q, i))])
             if (holds(not_unique)) call append(record%notes, trim(estimated(q)%name)//' of '// &
                model%contacts(i)%name//' is '//to_text(values(q, i))//' or '//to_text( &
                other(q, i))//': the conductance jumps as the gap closes, two contact states '// &
@@ -259,25 +248,12 @@ contains
       end do
    end subroutine judge_interfaces
 
-   !> Whether the contact points of an interface have friction.
-   pure logical function has_friction(simulation, interface)
-      type(simulation_type), intent(in) :: simulation
-      integer, intent(in) :: interface
-
-      associate (start => simulation%bodies%points%interface_start, &
-         friction => simulation%bodies%laws%friction)
-         has_friction = any(friction(start(interface):start(interface + 1) - 1)%coefficient > &
-            0.0_dp)
-      end associate
-   end function has_friction
-
    !> Uncertainties of the maxima of bodies.
-   subroutine judge_bodies(self, model, simulation, found, iteration, record)
+   subroutine judge_bodies(self, model, simulation, found, record)
       type(error_estimator_type), intent(in) :: self
       type(model_type), intent(in) :: model
       type(simulation_type), intent(in) :: simulation
       type(body_maxima_type), intent(in) :: found
-      real(dp), intent(in) :: iteration                      ! relative
       type(increment_record_type), intent(inout) :: record
       logical :: is_larger(size(found%is_singular)), holds(reason_count)
       real(dp) :: change(size(maxima), model%mesh%body_count), value(size(maxima))
@@ -303,8 +279,7 @@ contains
                holds(of_path) = .not. self%is_full .and. ieee_is_nan(change(q, b))
                if (maxima(q)%name == 'temperature' .and. simulation%loads%temperature%active( &
                   own%node(q))) change(q, b) = 0.0_dp
-               call settle(own, q, reason_of(self, holds, change(q, b)), uncertainty_parts( &
-                  maxima(q), change(q, b), 0.0_dp, 0.0_dp, iteration*value(q)))
+               call settle(self, own, q, maxima(q), change(q, b), holds)
             end do
          end associate
       end do
@@ -312,23 +287,22 @@ contains
 
    !> Uncertainties of what checks judge. The last increment alone tells quantities of interfaces,
    !> maxima, and values at single nodes.
-   subroutine judge_checks(self, model, simulation, found, iteration, record)
+   subroutine judge_checks(self, model, simulation, found, record)
       type(error_estimator_type), intent(in) :: self
       type(model_type), intent(in) :: model
       type(simulation_type), intent(in) :: simulation
       type(body_maxima_type), intent(in) :: found
-      real(dp), intent(in) :: iteration                      ! relative
       type(increment_record_type), intent(inout) :: record
+      !> What checks call the maxima.
+      character(*), parameter :: names(*) = [character(5) :: 'MISES', 'NT', 'PEEQ', 'CEEQ']
       type(contact_points_type), allocatable :: interfaces(:), fine_interfaces(:)
-      type(point_map_type) :: fine_points
       type(uncertainty_type) :: checks
       integer :: i
 
       call clear(checks, spread(ieee_value(1.0_dp, ieee_quiet_nan), 1, size(model%verifications)))
-      if (size(model%verifications) > 0) call simulation%bodies%views(interfaces)
-      if (size(model%verifications) > 0 .and. .not. allocated(self%lost)) then
-         call self%divided%interfaces(fine_interfaces)
-         fine_points = self%divided%points()
+      if (size(model%verifications) > 0) then
+         call simulation%bodies%views(interfaces)
+         if (.not. allocated(self%lost)) call self%divided%run%bodies%views(fine_interfaces)
       end if
       do i = 1, size(model%verifications)
          associate (check => model%verifications(i))
@@ -360,26 +334,20 @@ contains
             call copy(record%uncertainties(k), q)
             return
          end do
-         q = 0
-         if (quantity == 'MISES') q = find_quantity(maxima, 'von_mises')
-         if (quantity == 'NT') q = find_quantity(maxima, 'temperature')
-         if (quantity == 'PEEQ') q = find_quantity(maxima, 'equivalent_plastic_strain')
-         if (quantity == 'CEEQ') q = find_quantity(maxima, 'equivalent_creep_strain')
-         if (q > 0 .and. where == 'MAX') then
-            k = maxloc(found%value(q, :), dim=1)
-            if (found%node(q, k) > 0) then
-               call values_asked_for(check, record, model, interfaces, &
-                  simulation%recovery%points%node, values, reason)
-               checks%value(i) = maxval(values)
-               if (checks%value(i) > found%value(q, k)) then
-                  call settle(checks, i, at_corner, spread(0.0_dp, 1, 3))
-               else
-                  call copy(record%body_uncertainties(k), q)
-               end if
-               return
-            end if
+         q = findloc(names == quantity, .true., dim=1)
+         is_copied = q > 0 .and. where == 'MAX'
+         if (.not. is_copied) return
+         k = maxloc(found%value(q, :), dim=1)
+         is_copied = found%node(q, k) > 0
+         if (.not. is_copied) return
+         call values_asked_for(check, record, model, interfaces, &
+            simulation%recovery%points%node, values, reason)
+         if (maxval(values) > found%value(q, k)) then
+            checks%value(i) = maxval(values)
+            checks%no_estimate(i) = at_corner
+         else
+            call copy(record%body_uncertainties(k), q)
          end if
-         is_copied = .false.
       end function is_copied
 
       subroutine copy(own, q)
@@ -387,8 +355,11 @@ contains
          integer, intent(in) :: q
 
          checks%value(i) = own%value(q)
-         call settle(checks, i, own%no_estimate(q), [own%change(q), own%scatter(q), &
-            own%iteration(q)])
+         checks%total(i) = own%total(q)
+         checks%change(i) = own%change(q)
+         checks%scatter(i) = own%scatter(q)
+         checks%iteration(i) = own%iteration(q)
+         checks%no_estimate(i) = own%no_estimate(q)
       end subroutine copy
 
       !> Compares what both meshes have.
@@ -410,53 +381,35 @@ contains
             values, reason)
          if (reason /= '') return
          checks%value(i) = worst_of(check, values)
-         fine = [ieee_value(1.0_dp, ieee_quiet_nan)]
          if (.not. (allocated(self%lost) .or. any(holds))) call values_asked_for(check, &
-            self%divided%record, self%divided%model, fine_interfaces, fine_points%node, fine, &
-            reason)
-         if (reason /= '') fine = [ieee_value(1.0_dp, ieee_quiet_nan)]
-         call settle(checks, i, reason_of(self, holds, worst_of(check, fine)), &
-            uncertainty_parts(quantity, worst_of(check, fine) - checks%value(i), 0.0_dp, 0.0_dp, &
-            iteration*checks%value(i)))
+            self%divided%record, self%divided%model, fine_interfaces, &
+            self%divided%run%recovery%points%node, fine, reason)
+         if (reason /= '' .or. .not. allocated(fine)) fine = [ieee_value(1.0_dp, ieee_quiet_nan)]
+         call settle(self, checks, i, quantity, worst_of(check, fine) - checks%value(i), holds)
       end subroutine compare
 
    end subroutine judge_checks
 
    !> Uncertainties of the quantities of an increment.
-   subroutine judge_history(self, iteration, record)
+   subroutine judge_history(self, record)
       type(error_estimator_type), intent(in) :: self
-      real(dp), intent(in) :: iteration                      ! relative
       type(increment_record_type), intent(inout) :: record
       type(uncertainty_type) :: own
       logical :: holds(reason_count)
-      real(dp) :: after
+      real(dp) :: change
       integer :: q
 
       holds = .false.
       call clear(own, [(history_value(history_estimated(q)%name, record), &
          q=1, size(history_estimated))])
       do q = 1, size(own%value)
-         after = ieee_value(1.0_dp, ieee_quiet_nan)
-         if (.not. allocated(self%lost)) after = history_value(history_estimated(q)%name, &
-            self%divided%record)
-         call settle(own, q, reason_of(self, holds, after), uncertainty_parts( &
-            history_estimated(q), after - own%value(q), 0.0_dp, 0.0_dp, iteration*own%value(q)))
+         change = ieee_value(1.0_dp, ieee_quiet_nan)
+         if (.not. allocated(self%lost)) change = history_value(history_estimated(q)%name, &
+            self%divided%record) - own%value(q)
+         call settle(self, own, q, history_estimated(q), change, holds)
       end do
       record%history_uncertainties = own
    end subroutine judge_history
-
-   !> Why a number has no uncertainty.
-   pure integer function reason_of(self, holds, fine)
-      type(error_estimator_type), intent(in) :: self
-      logical, intent(in) :: holds(reason_count)   ! what is known of it
-      real(dp), intent(in) :: fine                 ! on the finer mesh, or NaN
-      logical :: all_holds(reason_count)
-
-      all_holds = holds
-      all_holds(not_on_finer_mesh) = allocated(self%lost)
-      all_holds(no_finer_value) = ieee_is_nan(fine)
-      reason_of = first_reason(all_holds)
-   end function reason_of
 
    !> Begins with values alone.
    pure subroutine clear(own, values)
@@ -473,16 +426,30 @@ contains
    end subroutine clear
 
    !> Gives a value its uncertainty, or the reason why it has none; one that is not there has none.
-   pure subroutine settle(own, q, reason, parts)
-      class(uncertainty_type), intent(inout) :: own
+   pure subroutine settle(self, own, q, quantity, change, holds, beside)
+      type(error_estimator_type), intent(in) :: self
+      class(uncertainty_type), intent(inout) :: own   ! with the value
       integer, intent(in) :: q
-      integer, intent(in) :: reason          ! no_reason for one that has
-      real(dp), intent(in) :: parts(3)       ! of uncertainty_parts
+      type(quantity_type), intent(in) :: quantity
+      real(dp), intent(in) :: change                  ! on the finer mesh, or NaN
+      logical, intent(in) :: holds(reason_count)      ! what is known of the value
+      real(dp), intent(in), optional :: beside(2)     ! scatter and spacing; absent: 0
+      logical :: all_holds(reason_count)
+      real(dp) :: parts(3), others(2)
 
       if (ieee_is_nan(own%value(q))) return
-      own%no_estimate(q) = reason
-      if (reason == of_path .and. .not. ieee_is_nan(sum(parts))) own%at_end(q) = sum(parts)
-      if (reason /= no_reason) return
+      all_holds = holds
+      all_holds(not_on_finer_mesh) = allocated(self%lost)
+      all_holds(no_finer_value) = ieee_is_nan(change)
+      own%no_estimate(q) = first_reason(all_holds)
+      others = 0.0_dp
+      if (present(beside)) others = beside
+      parts = uncertainty_parts(quantity, change, others(1), others(2), &
+         self%iteration*own%value(q))
+      if (any(own%no_estimate(q) == [of_axis, of_path]) .and. .not. ieee_is_nan(sum(parts))) then
+         own%at_end(q) = sum(parts)
+      end if
+      if (own%no_estimate(q) /= no_reason) return
       own%change(q) = parts(1)
       own%scatter(q) = parts(2)
       own%iteration(q) = parts(3)
@@ -530,13 +497,6 @@ contains
       call self%divided%release()
    end subroutine release
 
-   !> Where the quantity that a check names has its numbers.
-   pure integer function kind_of(check)
-      type(verify_type), intent(in) :: check
-
-      kind_of = verifiable(find_quantity(verifiable, check%quantity))%kind
-   end function kind_of
-
    !> Squared error of each element: stress and heat flux of each body count by their relative
    !> errors.
    pure function squared_errors(mesh, record) result(error)
@@ -544,49 +504,44 @@ contains
       type(increment_record_type), intent(in) :: record  !! with the fields of its end
       real(dp) :: error(size(mesh%element_kind))
 
-      error = 0.0_dp
-      call add_errors(mesh, record%stress_error, error)
-      call add_errors(mesh, record%heat_flux_error, error)
+      error = errors_of(mesh, record%stress_error) + errors_of(mesh, record%heat_flux_error)
    end function squared_errors
 
-   !> Adds the part that each element has in the squared relative error of its body.
-   pure subroutine add_errors(mesh, estimate, error)
+   !> The part that each element has in the squared relative error of its body.
+   pure function errors_of(mesh, estimate) result(error)
       type(mesh_type), intent(in) :: mesh
       type(error_record_type), intent(in) :: estimate
-      real(dp), intent(inout) :: error(:)
-      real(dp) :: square(size(error)), sums(mesh%body_count)
+      real(dp) :: error(size(mesh%element_kind))
+      real(dp) :: sums(mesh%body_count)
       integer :: e
 
+      error = 0.0_dp
       if (.not. allocated(estimate%element)) return
       sums = 0.0_dp
       do e = 1, size(error)
-         square(e) = estimate%element(e)**2*area_of(mesh, e)
-         sums(mesh%element_body(e)) = sums(mesh%element_body(e)) + square(e)
+         error(e) = estimate%element(e)**2*area_of(mesh, e)
+         sums(mesh%element_body(e)) = sums(mesh%element_body(e)) + error(e)
       end do
       do e = 1, size(error)
          associate (b => mesh%element_body(e))
-            if (sums(b) <= 0.0_dp) cycle
-            if (estimate%body(b) > rounding) error(e) = error(e) + estimate%body(b)**2*square(e)/ &
-               sums(b)
+            if (sums(b) > 0.0_dp .and. estimate%body(b) > rounding) then
+               error(e) = estimate%body(b)**2*error(e)/sums(b)
+            else
+               error(e) = 0.0_dp
+            end if
          end associate
       end do
-   end subroutine add_errors
+   end function errors_of
 
    !> Area of an element between its corners.
    pure real(dp) function area_of(mesh, e) result(area)
       type(mesh_type), intent(in) :: mesh
       integer, intent(in) :: e
-      integer :: corners, i
 
-      area = 0.0_dp
-      corners = element_corner_count(mesh%element_kind(e))
-      do i = 1, corners
-         associate (a => mesh%coordinates(:, mesh%element_nodes(i, e)), &
-            b => mesh%coordinates(:, mesh%element_nodes(mod(i, corners) + 1, e)))
-            area = area + 0.5_dp*(a(1)*b(2) - a(2)*b(1))
-         end associate
-      end do
-      area = abs(area)
+      associate (x => mesh%coordinates(:, mesh%element_nodes(:element_corner_count( &
+         mesh%element_kind(e)), e)))
+         area = 0.5_dp*abs(sum(x(1, :)*cshift(x(2, :), 1) - cshift(x(1, :), 1)*x(2, :)))
+      end associate
    end function area_of
 
 end module error_estimator

@@ -1,7 +1,7 @@
 !> The quantities of an interface whose errors are estimated.
 module interface_quantities
    use, intrinsic :: ieee_arithmetic, only: ieee_is_nan
-   use contact_points, only: contact_points_type
+   use contact_points, only: contact_points_type, on_axis
    use contact_quantities, only: contact_values, estimated
    use contact_system, only: contact_open
    use increment_records, only: measure_contact
@@ -14,7 +14,7 @@ module interface_quantities
    implicit none
    private
    public :: closed_length, contact_width, contacts_of_state, is_end_of_face, peak_is_at_end, &
-      peaks_at_corner, point_before, quantities_of, quantities_of_state, rises_to_end, spacing_at
+      peaks_at_axis, peaks_at_corner, point_before, quantities_of, rises_to_end, spacing_at
 
 contains
 
@@ -28,20 +28,6 @@ contains
          values(q:q) = contact_values(estimated(q)%name, contact)
       end do
    end function quantities_of
-
-   !> The quantities of all interfaces in a state.
-   subroutine quantities_of_state(bodies, state, values)
-      type(reduced_bodies_type), intent(in) :: bodies
-      type(solution_state_type), intent(in) :: state
-      real(dp), intent(out) :: values(:, :)                     !! (quantities, interfaces)
-      type(contact_record_type), allocatable :: contacts(:)
-      integer :: i
-
-      call contacts_of_state(bodies, state, contacts)
-      do i = 1, size(contacts)
-         values(:, i) = quantities_of(contacts(i))
-      end do
-   end subroutine quantities_of_state
 
    !> The interfaces in a state, without slip, temperatures, conductance and heat flux.
    subroutine contacts_of_state(bodies, state, contacts)
@@ -113,32 +99,23 @@ contains
       end do
    end function closed_length
 
-   !> Distance of the contact points on both sides of an edge; 0 at or beyond the last contact
-   !> point of a piece, where a zone ends with the face.
-   pure real(dp) function edge_spacing(points, edge)
-      type(contact_points_type), intent(in) :: points !! the contact points of the interface
-      real(dp), intent(in) :: edge                    !! as arc length, or NaN [length]
-      integer :: k
-
-      edge_spacing = 0.0_dp
-      if (ieee_is_nan(edge) .or. size(points%arc_length) < 2) return
-      associate (s => points%arc_length)
-         k = point_before(s, edge)
-         if (.not. points%on_one_piece(k, k + 1)) return
-         if (edge >= s(k) .and. edge < s(k + 1)) edge_spacing = s(k + 1) - s(k)
-      end associate
-   end function edge_spacing
-
    !> The spacing that an edge is known to a part of: of the contact points about it for contact, of
-   !> the nodes for stick; 0 at the end of the face and for what is no edge [length].
+   !> the nodes for stick; 0 at or beyond the last contact point of a piece, where a zone ends with
+   !> the face, and for what is no edge [length].
    pure real(dp) function spacing_at(quantity, points, edge) result(spacing)
       type(quantity_type), intent(in) :: quantity
       type(contact_points_type), intent(in) :: points  !! the contact points of the interface
       real(dp), intent(in) :: edge                     !! as arc length, or NaN [length]
+      integer :: k
 
       spacing = 0.0_dp
-      if (quantity%resolution <= 0.0_dp) return
-      spacing = edge_spacing(points, edge)
+      if (quantity%resolution <= 0.0_dp .or. ieee_is_nan(edge)) return
+      if (size(points%arc_length) < 2) return
+      associate (s => points%arc_length)
+         k = point_before(s, edge)
+         if (.not. points%on_one_piece(k, k + 1)) return
+         if (edge >= s(k) .and. edge < s(k + 1)) spacing = s(k + 1) - s(k)
+      end associate
       if (quantity%name == 'edge_stick') spacing = spacing/points%node_spacings
    end function spacing_at
 
@@ -156,8 +133,8 @@ contains
       type(contact_points_type), intent(in) :: points   !! the contact points of the interface
       real(dp), intent(in) :: value                     !! of the quantity; NaN: none
 
-      is_end_of_face = quantity%resolution > 0.0_dp .and. .not. ieee_is_nan(value)
-      if (is_end_of_face) is_end_of_face = edge_spacing(points, value) <= 0.0_dp
+      is_end_of_face = quantity%resolution > 0.0_dp .and. .not. ieee_is_nan(value) .and. &
+         spacing_at(quantity, points, value) <= 0.0_dp
    end function is_end_of_face
 
    !> Whether the pressure is largest at the first, at the last contact point of each piece; not
@@ -180,6 +157,18 @@ contains
 
       peaks_at_corner = any(points%at_corner .and. peak_is_at_end(points, contact))
    end function peaks_at_corner
+
+   !> Whether the pressure of sides of two nodes is largest within two of them from the axis, where
+   !> errors of two orders may cancel on a mesh.
+   pure logical function peaks_at_axis(points, contact)
+      type(contact_points_type), intent(in) :: points     !! contact points of the interface
+      type(contact_record_type), intent(in) :: contact    !! its state
+      integer :: k, peak
+
+      peak = maxloc(contact%pressure, dim=1)
+      peaks_at_axis = (points%side_nodes - 1)*points%node_spacings == 1 .and. any(on_axis(points, &
+         [(k, k=max(1, peak - 2), min(size(contact%pressure), peak + 2))]))
+   end function peaks_at_axis
 
    !> Whether the pressure is largest at an end of a piece and rises to it beyond the line through
    !> the two contact points before, as where it has no limit: by more than pressures of corners and

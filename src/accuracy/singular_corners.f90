@@ -53,7 +53,7 @@ contains
 
       outline = outline_of(model, held_directions(model, simulation))
       is_singular = are_sharp(outline)
-      is_singular = is_singular .or. are_loaded_alone(model%mesh, forces_act(model, record))
+      is_singular = is_singular .or. are_loaded_alone(model, record)
       do i = 1, size(record%contacts)
          call simulation%bodies%view(i, points)
          ends = points%ends()
@@ -199,13 +199,16 @@ contains
       end associate
    end function are_sharp
 
-   !> Where loads, supports, springs and trusses act on nodes, and along which direction.
-   pure function forces_act(model, record) result(acts)
+   !> Nodes on which loads, supports, springs or trusses act where none does on a node of the same
+   !> elements in its direction.
+   pure function are_loaded_alone(model, record) result(alone)
       type(model_type), intent(in) :: model
       type(increment_record_type), intent(in) :: record
-      logical :: acts(2, size(model%mesh%node_number))
-      integer :: i, k
+      logical :: alone(size(model%mesh%node_number))
+      logical, dimension(2, size(model%mesh%node_number)) :: acts, has_neighbour
+      integer :: d, e, i, k
 
+      alone = .false.
       acts = .false.
       if (.not. allocated(record%fields%external_force)) return
       associate (force => record%fields%external_force)
@@ -218,19 +221,10 @@ contains
             end do
          end associate
       end do
-   end function forces_act
-
-   !> Nodes on which a force acts where none does on a node of the same elements in its direction.
-   pure function are_loaded_alone(mesh, acts) result(alone)
-      type(mesh_type), intent(in) :: mesh
-      logical, intent(in) :: acts(:, :)                   ! (2, nodes)
-      logical :: alone(size(acts, 2))
-      logical :: has_neighbour(2, size(acts, 2))
-      integer :: d, e
-
       has_neighbour = .false.
-      do e = 1, size(mesh%element_number)
-         associate (nodes => mesh%element_nodes(:element_node_count(mesh%element_kind(e)), e))
+      do e = 1, size(model%mesh%element_number)
+         associate (nodes => model%mesh%element_nodes(:element_node_count( &
+            model%mesh%element_kind(e)), e))
             do d = 1, 2
                if (count(acts(d, nodes)) > 1) has_neighbour(d, nodes) = .true.
             end do

@@ -31,6 +31,7 @@ contains
       real(dp), intent(in) :: iteration                        !! what it left, relative
       type(increment_record_type), intent(inout) :: record
       type(contact_points_type), allocatable :: finer(:), points(:)
+      real(dp) :: before(3), change(3)
       integer :: i
 
       if (allocated(record%pre_tension)) record%pre_tension_uncertainties = total('pre_tension', &
@@ -41,17 +42,19 @@ contains
                record%fields)
             allocate (record%total_uncertainties(3, size(step%node_prints)))
             do i = 1, size(step%node_prints)
-               record%total_uncertainties(:, i) = totals_of(record%fields, &
-                  step%node_prints(i)%members(mesh%node_sets, size(mesh%node_body)), &
-                  divided%record%fields, step%node_prints(i)%members(fine%node_sets, &
-                  size(fine%node_body)), iteration)
+               before = sums_of(record%fields, step%node_prints(i)%members(mesh%node_sets, &
+                  size(mesh%node_body)))
+               change = sums_of(divided%record%fields, step%node_prints(i)%members( &
+                  fine%node_sets, size(fine%node_body))) - before
+               record%total_uncertainties(:, i) = [total('RF1', change(:2), before(:2), &
+                  iteration), total('RFL', change(3:), before(3:), iteration)]
             end do
          end if
          if (.not. table_is_due(step%contact_print_frequency, step%contact_print_points, record, &
             model)) return
       end associate
       call simulation%bodies%views(points)
-      call divided%interfaces(finer)
+      call divided%run%bodies%views(finer)
       allocate (record%contact_uncertainties(size(points)))
       do i = 1, size(points)
          record%contact_uncertainties(i) = points_of(points(i), record%contacts(i), finer(i), &
@@ -84,27 +87,16 @@ contains
       end associate
    end function fields_of
 
-   !> Those of the sums of external forces and heat over a set; NaN where the step does not have
-   !> these.
-   function totals_of(fields, nodes, finer, finer_nodes, iteration) result(own)
-      type(field_record_type), intent(in) :: fields, finer
-      integer, intent(in) :: nodes(:), finer_nodes(:)
-      real(dp), intent(in) :: iteration
-      real(dp) :: own(3), before(3), after(3)
+   !> Sums of external forces and heat over a set; NaN where the step does not have these.
+   pure function sums_of(fields, nodes) result(sums)
+      type(field_record_type), intent(in) :: fields
+      integer, intent(in) :: nodes(:)
+      real(dp) :: sums(3)
 
-      before = ieee_value(1.0_dp, ieee_quiet_nan)
-      after = before
-      if (allocated(fields%external_force)) then
-         before(:2) = sum(fields%external_force(:, nodes), dim=2)
-         after(:2) = sum(finer%external_force(:, finer_nodes), dim=2)
-      end if
-      if (allocated(fields%external_heat)) then
-         before(3) = sum(fields%external_heat(nodes))
-         after(3) = sum(finer%external_heat(finer_nodes))
-      end if
-      own(:2) = total('RF1', after(:2) - before(:2), before(:2), iteration)
-      own(3:) = total('RFL', after(3:) - before(3:), before(3:), iteration)
-   end function totals_of
+      sums = ieee_value(1.0_dp, ieee_quiet_nan)
+      if (allocated(fields%external_force)) sums(:2) = sum(fields%external_force(:, nodes), dim=2)
+      if (allocated(fields%external_heat)) sums(3) = sum(fields%external_heat(nodes))
+   end function sums_of
 
    !> Those of the columns of contact points; NaN at points that the finer mesh does not have.
    function points_of(points, contact, finer, after, iteration) result(own)

@@ -6,8 +6,9 @@
 !> divides both faces, and the last two changes from round to round tell it by the same rule: one
 !> change can be small by chance. Of a peak pressure with friction the last increment tells a part,
 !> by which meshes are refined; the change from the round before, which has the path in it, adds the
-!> rest. A pressure that has no limit has none whatever the changes are; where it is at a corner, no
-!> round is spent on it.
+!> rest, also to one near the axis on sides of two nodes, where both have to be small. A pressure
+!> that has no limit has none whatever the changes are; where it is at a corner, no round is spent
+!> on it.
 module accuracy_rounds
    use, intrinsic :: ieee_arithmetic, only: ieee_is_nan, ieee_quiet_nan, ieee_value
    use accuracy_targets, only: accuracy_request_type
@@ -17,8 +18,8 @@ module accuracy_rounds
    use interface_quantities, only: contact_width, is_end_of_face, peak_is_at_end, spacing_at
    use kinds, only: dp
    use model, only: model_type
-   use no_estimates, only: at_corner, grows, no_reason, of_path, of_sliding, reason_of_run, &
-      remains, slides_far
+   use no_estimates, only: at_corner, grows, no_reason, of_axis, of_path, of_sliding, &
+      reason_of_run, remains, slides_far
    use quantity_types, only: find_quantity, quantity_type
    use records, only: contact_record_type, increment_record_type, uncertainty_type
    use text, only: to_text
@@ -273,7 +274,7 @@ contains
          finer = 2.0_dp**quantity%order
          fall = finer
          change = max(now%change, before%change/finer)
-         if (now%at_end > 0.0_dp .and. before%at_end > 0.0_dp) then
+         if (now%at_end > 0.0_dp .and. before%at_end > 0.0_dp .and. now%no_estimate /= of_axis) then
             fall = min(max(finer, before%at_end/now%at_end), by_division**most_levels)
             change = now%change
          end if

@@ -9,7 +9,9 @@
 !> Four-node elements of plane strain and axisymmetric ones use the mean dilatation of the element
 !> in place of that at each point (B-bar: Hughes, Int. J. Num. Meth. Eng. 15 (1980) 1413), so that
 !> nearly incompressible materials do not lock them. Those with incompatible modes have enhanced
-!> strains.
+!> strains. Axisymmetric ones use the mean of the shear strain over their area, too: where u_x grows
+!> with r y and u_y with r^2, as below a contact, u_y is linear between nodes, and the shear strain
+!> that is left loads the nodes on the axis by 1/r for 2 pi r is larger on one side of its zero.
 module element_elasticity
    use blas_lapack, only: dgemm
    use element_integrals, only: area_factor
@@ -120,14 +122,15 @@ contains
       end do
    end function element_stress_force
 
-   !> B at all integration points, with the mean dilatation where the element uses it or, for an
-   !> elasticity, with the enhanced strains that it has; and the volumes that the points stand for.
+   !> B at all integration points, with the means where the element uses them or, for an elasticity,
+   !> with the enhanced strains that it has; and the volumes that the points stand for.
    pure subroutine strain_matrices(kind, plane, coordinates, thickness, b, volumes, e)
       integer, intent(in) :: kind, plane
       real(dp), intent(in) :: coordinates(:, :), thickness
       real(dp), intent(out) :: b(:, :, :), volumes(:)
       real(dp), intent(in), optional :: e(:, :, :)
       real(dp) :: points(2, point_count(kind)), weights(point_count(kind))
+      real(dp) :: areas(point_count(kind))
       real(dp), dimension(size(b, 3)) :: change, mean
       integer :: g, i
 
@@ -142,6 +145,14 @@ contains
       if (present(e) .and. kind == quad4_enhanced) call enhance_strains(coordinates, points, &
          plane == axisymmetric, e, volumes, b)
       if (kind /= quad4 .or. plane == plane_stress) return
+      if (plane == axisymmetric) then
+         ! The sum of the shape functions over r is 1/r.
+         areas = volumes*sum(b(3, :, :), dim=2)
+         mean = matmul(areas, b(4, :, :))/sum(areas)
+         do g = 1, size(volumes)
+            b(4, g, :) = mean
+         end do
+      end if
       ! Mean of eps_xx + eps_yy + eps_zz over the volume, per degree of freedom.
       mean = 0.0_dp
       do g = 1, size(volumes)

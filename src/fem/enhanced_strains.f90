@@ -8,7 +8,9 @@
 !>
 !>    eps_xi = xi, eps_eta = eta, gamma = xi, gamma = eta, and eps_zz = xi eta around an axis,
 !>
-!> each less its mean, so that a uniform stress does no work on them.
+!> each less its mean, so that a uniform stress does no work on them. Around an axis shear strains
+!> have the mean over the area, not over the volume: a uniform shear stress is in no equilibrium
+!> there, and what the others would leave loads the nodes on the axis (element_elasticity).
 module enhanced_strains
    use blas_lapack, only: dgetrf, dgetrs
    use kinds, only: dp
@@ -84,7 +86,7 @@ contains
       real(dp), intent(out) :: modes(4, 4, most_modes)
       integer, intent(out) :: n                   ! modes that there are
       real(dp) :: slopes(2, 3), values(4, most_modes), strains(4, most_modes)
-      real(dp) :: a(2), b(2), jacobian(4), radius(4)
+      real(dp) :: a(2), b(2), jacobian(4), mean, radius(4)
       integer :: g, k
 
       n = merge(most_modes, most_modes - 1, is_axisymmetric)
@@ -110,9 +112,10 @@ contains
       end do
       modes = 0.0_dp
       do k = 1, n
-         values(:, k) = values(:, k) - dot_product(radius, values(:, k))/sum(radius)
+         mean = dot_product(radius, values(:, k))/sum(radius)
          do g = 1, 4
-            modes(:, g, k) = strains(:, k)*values(g, k)/jacobian(g)
+            modes(:3, g, k) = strains(:3, k)*(values(g, k) - mean)/jacobian(g)
+            modes(4, g, k) = strains(4, k)*values(g, k)/jacobian(g)
          end do
       end do
    end subroutine find_modes

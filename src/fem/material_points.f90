@@ -272,7 +272,7 @@ contains
       real(dp), intent(in) :: temperature(:)
       real(dp), intent(inout) :: strain(most, 4)
       real(dp), intent(inout) :: values(most, 4)
-      real(dp) :: warmth(most), u(3, nodes_per_element)
+      real(dp) :: areas(most), warmth(most), u(3, nodes_per_element)
       integer :: g, i, n, q
 
       associate (kind => mesh%element_kind(element), plane => mesh%element_plane(element), &
@@ -283,8 +283,14 @@ contains
             u(3, q) = temperature(nodes(q))
          end do
          call find_strains(self%rules(kind), self%inverse(:, first), u, strain, warmth)
-         if (plane == axisymmetric) call add_hoop_strain(self%rules(kind), nodes, &
-            mesh%coordinates, displacement, strain(:n, 3))
+         if (plane == axisymmetric) then
+            call add_hoop_strain(self%rules(kind), nodes, mesh%coordinates, displacement, &
+               strain(:n, 3))
+            if (kind == quad4) then
+               areas(:n) = areas_of(self, mesh, element)
+               strain(:n, 4) = dot_product(areas(:n), strain(:n, 4))/sum(areas(:n))
+            end if
+         end if
          if (plane == generalized_strain) call add_strain_along_z(self, mesh, element, &
             displacement, strain(:n, 3))
          if (kind == quad4 .and. plane /= plane_stress) call set_mean_dilatation( &
@@ -305,6 +311,19 @@ contains
          end if
       end associate
    end subroutine elastic_stress
+
+   !> Areas that the points of an axisymmetric element stand for, times 2 pi.
+   pure function areas_of(self, mesh, element) result(areas)
+      class(material_points_type), intent(in) :: self
+      type(mesh_type), intent(in) :: mesh
+      integer, intent(in) :: element
+      real(dp) :: areas(self%rules(mesh%element_kind(element))%count)
+
+      associate (rule => self%rules(mesh%element_kind(element)), first => self%first(element))
+         areas = self%volume(first:first + rule%count - 1)/matmul(rule%shape(:rule%count, &
+            :rule%nodes), mesh%coordinates(1, mesh%element_nodes(:rule%nodes, element)))
+      end associate
+   end function areas_of
 
    !> Adds eps_zz of a generalized plane strain.
    pure subroutine add_strain_along_z(self, mesh, element, displacement, strain)
@@ -441,7 +460,7 @@ contains
       integer, intent(in) :: element                 !! which element
       real(dp), intent(in) :: stress(most, 4)        !! its points first; xx, yy, zz, xy [stress]
       real(dp) :: forces(2, nodes_per_element + 2)   !! x, y of its nodes [force]
-      real(dp) :: s(most, 4), t(most, 2, 2), hoop(most)
+      real(dp) :: s(most, 4), t(most, 2, 2), areas(most), hoop(most)
       integer :: g, q
 
       associate (kind => mesh%element_kind(element), plane => mesh%element_plane(element), &
@@ -454,6 +473,13 @@ contains
          t = 0.0_dp
          do g = 1, rule%count
             s(g, :) = self%volume(first + g - 1)*s(g, :)
+         end do
+         ! That of a mean shear strain parts the shear stress by areas.
+         if (kind == quad4 .and. plane == axisymmetric) then
+            areas(:rule%count) = areas_of(self, mesh, element)
+            s(:rule%count, 4) = areas(:rule%count)*sum(s(:rule%count, 4))/sum(areas(:rule%count))
+         end if
+         do g = 1, rule%count
             t(g, :, 1) = along_reference(self%inverse(:, first + g - 1), s(g, 1), s(g, 4))
             t(g, :, 2) = along_reference(self%inverse(:, first + g - 1), s(g, 4), s(g, 2))
          end do

@@ -21,14 +21,15 @@ module no_estimates
    integer, parameter, public :: not_on_finer_mesh = 9, no_finer_value = 10
    integer, parameter, public :: of_sliding = 11   !! of contact points that follow sliding: of_path
    integer, parameter, public :: of_points = 12    !! single nodes or points, not on both meshes
-   integer, parameter, public :: reason_count = 12
-   integer, parameter, public :: of_checks = 13    !! of what checks alone compare; in no file
+   integer, parameter, public :: of_axis = 13      !! of a peak pressure there on linear elements
+   integer, parameter, public :: reason_count = 13
+   integer, parameter, public :: of_checks = 14    !! of what checks alone compare; in no file
 
    character(*), parameter :: words(of_checks) = [character(32) :: 'branches', 'ERRORS=NO', &
       'slides beyond its contact points', 'not unique', 'at a corner', &
       'peak grows with the mesh', 'path; ERRORS=FULL', 'needs ERRORS=FULL', &
       'no solution on a finer mesh', 'not there on a finer mesh', 'SLIDING=FINITE; ERRORS=FULL', &
-      'single points', '*VERIFY; ERRORS=FULL']
+      'single points', 'axis', '*VERIFY; ERRORS=FULL']
 
 contains
 

@@ -25,7 +25,7 @@ module records
       real(dp), allocatable :: scatter(:) !! by scatter over increments and places between nodes
       real(dp), allocatable :: iteration(:)    !! by what the fixed point has left
       integer, allocatable :: no_estimate(:)   !! why there is none, a reason of no_estimates
-      !> What the last increment alone tells of those that follow the path; 0 where it tells nothing
+      !> What one finer mesh tells of a part of those that have none; 0 where it tells nothing
       real(dp), allocatable :: at_end(:)
    end type uncertainty_type
 

@@ -61,7 +61,7 @@ PARTS = {
     "films": {"loads:film_matrix", "unit_loads:film_matrix"},
     "estimated errors": {
         "body_maxima", "companion_states", "divided_mesh", "error_estimator", "interface_quantities",
-        "other_states", "quantity_histories", "singular_corners", "uncertainty_rule",
+        "quantity_histories", "singular_corners", "uncertainty_rule",
     },
     "refinement": {"local_refinement", "mesh_division", "refinement"},
     "printed tables": {"increment_records:points_of_set", "listing_tables:print_contact_table",

@@ -32,8 +32,7 @@ edges; r is 0.08 for the edge of contact, 0.6 for that of stick, which is known 
 
 `ERRORS=LAST`, the default, solves the last increment of each step once more, with elements divided
 at closed faces and where 95 % of the squared recovered errors are. It does not see what builds up
-along the path. `ERRORS=FULL` solves the whole deck once more with all elements and increments
-halved.
+along the path. `ERRORS=FULL` solves the whole deck again with all elements and increments halved.
 
 The constants were chosen on 160 decks (`tests/accuracy/drawn_decks.py`), of which 95 to 100 % hold
 for each quantity, and are judged on others in the next sections.

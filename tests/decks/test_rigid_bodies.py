@@ -99,6 +99,28 @@ def test_errors_are_within_their_uncertainties(tmp_path, kind, pairing, how):
         assert max(uncertainty / value for value, uncertainty in list(errors.values())[:3]) <= 0.01
 
 
+@pytest.mark.parametrize("kind", ["CAX4", "CAX4I"])
+def test_pressure_of_linear_elements_on_the_axis_has_the_second_order(tmp_path, kind):
+    """Half of the spacing leaves a quarter of the error; a third, with what is left of the logarithm of it."""
+    force, peak, _ = hertz("CAX8", 1000.0, 1.0)
+    errors = []
+    for level in (1, 2, 3):
+        deck = write(tmp_path / "deck.inp", roller(kind, force, "NODES", 1000.0, 400.0, level))
+        with h5py.File(solve(deck)) as file:
+            errors.append(abs(file["contact/FACE/pressure"][-1, 0] - peak))
+    assert errors[0] < 0.02 * peak and errors[1] < errors[0] / 3 and errors[2] < errors[1] / 3
+
+
+@pytest.mark.parametrize(("kind", "pairing"), [("CAX4", "NODES"), ("CAX4I", "SURFACES")])
+def test_a_requested_peak_on_the_axis_of_linear_elements_is_within_its_uncertainty(tmp_path, kind, pairing):
+    """One change of it may be small by chance: no round is the first and the last."""
+    force, peak, _ = hertz("CAX8", 1000.0, 1.0)
+    deck = write(tmp_path / "deck.inp", roller(kind, force, pairing, 1000.0, 400.0, 1))
+    with h5py.File(solve_as_written(deck, "--accuracy", "pressure=5%")) as file:
+        value, uncertainty = file["uncertainty/FACE/peak_pressure"][-1, :2]
+        assert abs(value - peak) <= uncertainty <= 0.05 * peak and len(file["accuracy/elements"]) > 1
+
+
 PLATE = ["*NODE", "9001, 0.5, 3.25", "9002, 2., 3.", "9003, 0., 3.", "9004, -2., 3."]
 DRAWN = [*PLATE, "*SURFACE, NAME=PLATE, TYPE=SEGMENTS", "START, 2., 3.", "LINE, 0., 3.",
          "LINE, -2., 3.", "*RIGID BODY, REF NODE=9001, ANALYTICAL SURFACE=PLATE"]
