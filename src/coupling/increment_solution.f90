@@ -449,8 +449,9 @@ contains
          next%displacement = bodies%equilibrium%recover_kept(bodies%mechanical, data%force, on_tail)
          ! A sparse tail keeps of faces that slide what touches now, not what comes to touch.
          if ((data%is_corrected .or. .not. allocated(bodies%faces_at) .or. &
-            bodies%mechanical%division%is_tail()) .and. allocated(data%force%forces)) &
+            bodies%mechanical%division%is_tail()) .and. allocated(data%force%forces)) then
             call bodies%equilibrium%pieces%fill(next%displacement, data%force%forces)
+         end if
          next%stress_temperature = next%temperature
          call remember_slip(bodies, workspace%contact, before, next)
       end associate

@@ -45,7 +45,8 @@ module model
 
    !> One *VERIFY data card.
    type :: verify_type
-      character(:), allocatable :: kind       !! ANALYTIC, EXTERNAL, LEGACY, FIGURE, REGRESSION, NONE
+      !> ANALYTIC, EXTERNAL, LEGACY, FIGURE, REGRESSION or NONE
+      character(:), allocatable :: kind
       character(:), allocatable :: source     !! where the value comes from
       character(:), allocatable :: quantity   !! dataset or nodal quantity
       !> The value that the quantity reaches at the time that is expected; unallocated where its own

@@ -18,8 +18,8 @@ module reached_levels
    !> The values of one card so far.
    type :: reached_level_type
       real(dp), allocatable :: level             !! unallocated for other cards
-      !> (6, values) the time at which each reached it first and its uncertainty; its last value with
-      !> its time, slope and increment; NaN where there is none, unallocated before the first
+      !> (6, values) the time at which each reached it first and its uncertainty; its last value
+      !> with its time, slope and increment; NaN where there is none, unallocated before the first
       real(dp), allocatable, private :: course(:, :)
    contains
       procedure :: follow
@@ -72,8 +72,8 @@ contains
                slope = (values(i) - before)/(time - then)
                if (ieee_is_nan(reached) .and. passes(before, values(i), self%level)) then
                   reached = time
-                  if (abs(values(i) - self%level) > 0.0_dp) reached = then + (self%level - before)/ &
-                     (values(i) - before)*(time - then)
+                  if (abs(values(i) - self%level) > 0.0_dp) reached = then + &
+                     (self%level - before)/(values(i) - before)*(time - then)
                   ! Between its increments the course is a parabola rather than a line.
                   bend = abs(slope - earlier_slope)/(time - then + increment)*(reached - then)* &
                      (time - reached)

@@ -193,7 +193,8 @@ contains
       associate (steps => size(model%steps), bodies => model%mesh%body_count)
          most_lines = 3 + told*(1 + size(estimated))
          if (interfaces == 0) most_lines = 1
-         if (interfaces == 0 .or. has_many(interfaces)) most_lines = most_lines + size(heat_names) + 1
+         if (interfaces == 0 .or. has_many(interfaces)) most_lines = most_lines + 1 + &
+            size(heat_names)
          if (interfaces > 0 .and. steps > 1) most_lines = most_lines + 1 + told*steps
          if (any(model%steps%cycle%steps > 0)) most_lines = most_lines + 1
          if (any(melts(model%materials))) most_lines = most_lines + 1
@@ -210,8 +211,8 @@ contains
    end function most_lines
 
    !> Adds when that increment was and where a branch turned, then each interface with a line for
-   !> each quantity that it has; none before the first increment. Without an interface, and with many,
-   !> the ranges of the fields are there.
+   !> each quantity that it has; none before the first increment. Without an interface, and with
+   !> many, the ranges of the fields are there.
    subroutine add_lines(self, model, interfaces, lines)
       class(summary_type), intent(in) :: self
       type(model_type), intent(in) :: model

@@ -279,8 +279,8 @@ contains
       type(request_type), intent(inout) :: request
       type(deck_type), intent(inout) :: deck
       logical, intent(inout) :: valid
-      character(*), parameter :: ignored = '*BOUNDARY: 0 on degrees of freedom 3 to 6 of nodes in '// &
-         'the plane is ignored'
+      character(*), parameter :: ignored = '*BOUNDARY: 0 on degrees of freedom 3 to 6 of nodes '// &
+         'in the plane is ignored'
       type(request_type) :: rotation
       integer, allocatable :: nodes(:)
       integer :: i
