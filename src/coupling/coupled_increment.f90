@@ -41,7 +41,7 @@ module coupled_increment
    !> Residual of the gains of many interfaces, beside 1: where many parts are alike so are their
    !> gains, and to tell these apart takes hundreds of products. Where laws vary with temperatures
    !> the matrix is less normal, and errors of the gains may be larger than residuals.
-   real(dp), parameter :: known_of_many = 1.0e-3_dp
+   real(dp), parameter :: known_of_many = 3.0e-4_dp
    real(dp), parameter :: least_part = 1.0e-12_dp  !! of the largest factor, that counts in scales
 
 contains
