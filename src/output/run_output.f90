@@ -223,6 +223,7 @@ contains
 
       allocate (lines(0))
       call self%listing%summary%add_lines(model, interfaces, lines)
+      call self%verifier%add_asked(model, lines)
       associate (targets => self%run%accuracy%targets, rounds => self%run%accuracy%rounds, &
          advice => self%run%accuracy%advice)
          do i = 1, size(targets)

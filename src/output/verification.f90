@@ -10,7 +10,7 @@ module verification
    use records, only: increment_record_type
    use reached_levels, only: reached_level_type, exchange_levels
    use state_tables, only: reals, state_table_type, words
-   use text, only: few_digits, percent, to_text
+   use text, only: append, few_digits, percent, string_type, to_text
    implicit none
    private
    public :: verifier_type, outcome_type, failure_words, node_words, uncertainty_words
@@ -38,6 +38,7 @@ module verification
       procedure :: judge
       procedure :: exchange
       procedure :: counts
+      procedure :: add_asked
    end type verifier_type
 
 contains
@@ -157,6 +158,29 @@ contains
             count(.not. outcomes%judged)]
       end associate
    end function counts
+
+   !> Adds a line for each value that is asked for and none expected, such as
+   !> `NT reaches 70 TOP: 0.2 +- 0.01`.
+   subroutine add_asked(self, model, lines)
+      class(verifier_type), intent(in) :: self
+      type(model_type), intent(in) :: model
+      type(string_type), allocatable, intent(inout) :: lines(:)
+      character(:), allocatable :: words
+      integer :: i
+
+      do i = 1, size(self%outcomes)
+         associate (check => model%verifications(i), outcome => self%outcomes(i))
+            if (check%expects .or. .not. outcome%judged) cycle
+            words = trim(check%title()//' '//check%where)
+            if (.not. check%at_last) words = words//' at time '//to_text(check%when)
+            if (outcome%reason == '') then
+               call append(lines, words//': '//to_text(outcome%found)//uncertainty_words(outcome))
+            else
+               call append(lines, words//': '//outcome%reason)
+            end if
+         end associate
+      end do
+   end subroutine add_asked
 
    !> The message on a check that failed, such as `deck.inp:36: check failed: NT MID, node 11 at
    !> time 1: 3.6, expected 3.7 (off by 2.7027 %, allowed 1 %)`.

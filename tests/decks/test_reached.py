@@ -132,6 +132,8 @@ def test_a_value_is_asked_for_without_an_expectation(tmp_path):
                                          "NT reaches 500., 1, LAST"])
     process = run("run", deck, "--json", "--out", tmp_path)
     assert process.returncode == 0 and "check failed" not in process.stderr
+    said = run("run", deck, "--out", tmp_path).stdout
+    assert "\n  NT BLOCK.TOP at time 0.2: 70 +- " in said and "\n  NT reaches 500 1: never reached\n" in said
     _, value, never = json.loads(process.stdout)["checks"]
     assert never["reason"] == "never reached" and "found" not in never
     assert value["found"] == pytest.approx(70.0) and value["uncertainty"] < 1e-9
