@@ -39,7 +39,7 @@ struct process_end {
 };
 
 static volatile sig_atomic_t caught, times, is_overdue, ends;
-static char deck[longest], where[longest], leftover[longest];
+static char deck[longest], where[longest], leftover[longest], second[longest];
 static int shows_progress, report_file = -1;
 static struct report filed;   /* what a child has reported */
 
@@ -109,7 +109,7 @@ int file_write_all(int descriptor, const char *bytes, size_t count);
 
 static void put(int file, const char *words) { file_write_all(file, words, strlen(words)); }
 
-/* Says why in one line, removes the file that is left over and ends the process. */
+/* Says why in one line, removes the files that are left over and ends the process. */
 static _Noreturn void end_run(int status, const char *reason)
 {
    filed.is_whole = 1;
@@ -123,6 +123,7 @@ static _Noreturn void end_run(int status, const char *reason)
    put(2, filed.reason);
    put(2, "\n");
    if (leftover[0]) unlink(leftover);
+   if (second[0]) unlink(second);
    if (report_file >= 0) (void)!pwrite(report_file, &filed, sizeof filed, 0);
    _exit(status);
 }
@@ -186,7 +187,7 @@ static void take_words(char *buffer, const char *words)
 
 /* When a signal may end the run from now on, and what is then to be said and removed. */
 void thercon_prepare_end(int when, int shows, const char *deck_path, const char *where_words,
-   const char *leftover_path)
+   const char *leftover_path, const char *second_path)
 {
    sigset_t all, before;
 
@@ -195,6 +196,7 @@ void thercon_prepare_end(int when, int shows, const char *deck_path, const char 
    take_words(deck, deck_path);
    take_words(where, where_words);
    take_words(leftover, leftover_path);
+   take_words(second, second_path);
    shows_progress = shows;
    ends = when;
    if (caught != 0 && ends == at_once) end_by_signal();

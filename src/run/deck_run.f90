@@ -416,7 +416,8 @@ contains
             inquire (file=or_blank(output%listing%path), size=bytes)
             if (bytes == 0) leftover = output%listing%path
          end if
-         call prepare_end(when, output%progress%is_shown, printable(self%path), words, leftover)
+         call prepare_end(when, output%progress%is_shown, printable(self%path), words, leftover, &
+            or_blank(output%results%contact_file%working_path))
       end associate
    end subroutine may_end
 
