@@ -46,7 +46,7 @@ module summary
    character(*), parameter :: heat_names(4) = [character(field_width) :: 'lowest temperature', &
       'highest temperature', 'heat in', 'heat out']
    !> As quantities of history that have uncertainties, where they are
-   character(*), parameter :: quantity_names(4) = [character(8) :: '-', '-', 'heat_in', 'heat_out']
+   character(*), parameter :: heat_quantities(4) = [character(8) :: '-', '-', 'heat_in', 'heat_out']
    character(*), parameter :: heat_units(4) = [character(11) :: 'temperature', 'temperature', &
       'power', 'power']
 
@@ -425,7 +425,7 @@ contains
       if (allocated(self%heat)) then
          do i = 1, size(heat_names)
             call append(lines, summary_line(heat_names(i), self%heat(i), history_words(self, &
-               model, quantity_names(i)), unit_label(heat_units(i), model%units), ''))
+               model, heat_quantities(i)), unit_label(heat_units(i), model%units), ''))
          end do
       end if
       if (allocated(self%displacement)) call append(lines, summary_line(displacement_name, &

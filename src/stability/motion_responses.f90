@@ -200,31 +200,32 @@ contains
       if (motion%changes == 0) return
       call products%begin(motion%changes, 0.0_dp, enough=rough)
       do while (products%wants_product)
-         if (motion%takes_rates) then
-            read = 2*(read_by(0.0_dp, 1.0_dp) + read_by(self%sigma, 0.0_dp))
-         else
-            read = read_by(0.0_dp, 1.0_dp)
-         end if
+         read = read_alone()
+         if (motion%takes_rates) read = 2*(read + read_by_rates())
          exchanged = motion%heats(bodies, self%response_to(bodies, motion, read))
          call products%take(exchanged(:, 1))
       end do
       largest = huge(largest)
       if (products%found) largest = abs(products%largest) + rough
    contains
-      !> N R N^T y with the part of N at constant temperatures, or with that of rates alone.
-      function read_by(rate, constant) result(changes)
-         real(dp), intent(in) :: rate, constant
+      !> N R N^T y at constant temperatures.
+      function read_alone() result(changes)
          real(dp) :: changes(motion%changes), sums(bodies%thermal%matrix%row_count, 1)
-         real(dp) :: answer(motion%changes, 1)
 
-         sums(:, 1) = motion%sums_of_answers(bodies, products%vector, rate)
-         if (constant <= 0.0_dp) sums(:, 1) = sums(:, 1) - motion%sums_of_answers(bodies, &
-            products%vector, 0.0_dp)
-         sums = self%solve(bodies, sums)
-         answer = motion%answers(bodies, sums, rate)
-         if (constant <= 0.0_dp) answer = answer - motion%answers(bodies, sums, 0.0_dp)
-         changes = answer(:, 1)
-      end function read_by
+         sums(:, 1) = motion%sums_of_answers(bodies, products%vector, 0.0_dp)
+         changes = reshape(motion%answers(bodies, self%solve(bodies, sums), 0.0_dp), &
+            [motion%changes])
+      end function read_alone
+
+      !> The same with what rates add to N at the rate of the response.
+      function read_by_rates() result(changes)
+         real(dp) :: changes(motion%changes), sums(bodies%thermal%matrix%row_count, 1)
+
+         sums(:, 1) = motion%sums_of_answers(bodies, products%vector, 1.0_dp) - &
+            motion%sums_of_answers(bodies, products%vector, 0.0_dp)
+         changes = self%sigma**2*reshape(motion%answers_to_rates(bodies, self%solve(bodies, &
+            sums)), [motion%changes])
+      end function read_by_rates
    end function largest_product
 
    !> W^T C W.
