@@ -12,7 +12,7 @@ module materials
    public :: material_type, properties_type, section_type, property_type, orientation_type
    public :: material_axes, strain_rotation, heat_capacity, least_heat_capacity
    public :: set_property, elasticity_of, isotropic, engineering, orthotropic, anisotropic
-   public :: follows_temperature, has_law, in_plane, reference_nodes, strain_freedoms, varies
+   public :: follows_temperature, has_law, reference_nodes, strain_freedoms, varies
    public :: thermal_strain, heat_content, heat_capacity_at, expansion_heat
    public :: set_latent_heat, melts, melting_row, latent_content, solid_fraction, melted_to
    public :: property_keywords, of_elasticity, of_expansion, of_conductivity, of_density, &
@@ -125,19 +125,6 @@ contains
          nodes = (dofs(1::3) + 1)/2
       end associate
    end function reference_nodes
-
-   !> Which nodes have displacements in the plane and a temperature: not those of strains along z.
-   pure function in_plane(sections, nodes) result(are)
-      type(section_type), intent(in) :: sections(:)
-      integer, intent(in) :: nodes                      !! their number
-      logical :: are(nodes)
-      integer :: i
-
-      are = .true.
-      do i = 1, size(sections)
-         if (sections(i)%reference(1) > 0) are(sections(i)%reference) = .false.
-      end do
-   end function in_plane
 
    !> rho c_p, 0 of a material without one.
    elemental real(dp) function heat_capacity(material)

@@ -15,7 +15,6 @@ module result_fields
    use hdf5_writer, only: as_byte, as_integer, as_long, as_real, hdf5_writer_type
    use increment_quantities, only: part_values
    use kinds, only: dp
-   use materials, only: in_plane
    use model, only: model_type
    use quantity_types, only: of_contact_points, of_elements, of_points, quantity_type
    use records, only: increment_record_type
@@ -87,8 +86,8 @@ module result_fields
       integer, allocatable :: face_row(:)                        !! their row of its at_face_nodes
       !> (2, points) unit vectors away from the origin in plane models; else unallocated
       real(dp), allocatable :: radial(:, :)
-      !> (points) whether it has a temperature: reference nodes of sections have none
-      logical, allocatable :: is_in_plane(:)
+      !> (points) whether an element uses its node: no other node has a temperature
+      logical, allocatable :: is_used(:)
    contains
       procedure :: start
       procedure :: append
@@ -113,11 +112,9 @@ contains
       logical, intent(in) :: has(0:)                     !! what the deck solves, by needs_*
       integer, intent(in) :: expected                    !! increments that are expected
       type(quantity_type), allocatable :: fields(:)
-      logical, allocatable :: is_in_plane(:)
 
       self%point_node = point_node
-      is_in_plane = in_plane(model%sections, size(model%mesh%node_number))
-      self%is_in_plane = is_in_plane(point_node)
+      self%is_used = model%mesh%node_body(point_node) > 0
       if (all(model%mesh%element_plane /= axisymmetric)) self%radial = &
          directions(model%mesh%coordinates(:, point_node))
       call find_faces(self, interfaces)
@@ -190,7 +187,7 @@ contains
             else
                values = point_values(quantity%name, record%fields, self%point_node, self%radial)
                if (quantity%unit == 'temperature' .and. size(values) > 0) values = merge(values, &
-                  ieee_value(1.0_dp, ieee_quiet_nan), self%is_in_plane)
+                  ieee_value(1.0_dp, ieee_quiet_nan), self%is_used)
                call self%sets(i)%append(values)
             end if
          end associate

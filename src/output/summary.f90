@@ -11,8 +11,9 @@ module summary
    use equations, only: section_nodes
    use field_quantities, only: maxima
    use kinds, only: dp
-   use materials, only: in_plane, melts
+   use materials, only: melts
    use mesh, only: mesh_type
+   use mesh_bodies, only: body_name
    use model, only: model_type
    use model_words, only: has_many
    use no_estimates, only: at_corner, mark_of, no_finer_value, no_reason, reason_inside_step, &
@@ -95,12 +96,8 @@ contains
       integer :: i
 
       if (.not. allocated(self%steps)) allocate (self%steps(0))
-      do i = 1, merge(size(interfaces), 0, record%last_of_step .and. size(model%steps) > 1)
-         if (has_many(size(interfaces))) then
-            if (i /= largest_at('peak_pressure', record%contacts)) cycle
-         end if
-         call append(self%steps, step_line(interfaces(i), record%contacts(i), record))
-      end do
+      if (record%last_of_step .and. size(model%steps) > 1) call add_step(self%steps, interfaces, &
+         record)
       self%increment = record%increment
       self%time = record%time
       self%load = record%load
@@ -137,7 +134,7 @@ contains
       if (allocated(self%heat)) deallocate (self%heat)
       if (allocated(self%displacement)) deallocate (self%displacement)
       associate (fields => record%fields)
-         counts = in_plane(model%sections, size(counts))
+         counts = model%mesh%node_body > 0
          if (allocated(fields%reaction_heat)) self%heat = [minval(fields%temperature, &
             mask=counts), maxval(fields%temperature, mask=counts), record%heat_in, record%heat_out]
          if (allocated(fields%stress)) self%displacement = maxval(norm2(fields%displacement, &
@@ -159,29 +156,63 @@ contains
       largest_at = maxloc(values, dim=1, mask=.not. ieee_is_nan(values))
    end function largest_at
 
-   !> An interface at the end of a step.
-   function step_line(points, contact, record) result(line)
-      type(contact_points_type), intent(in) :: points
-      type(contact_record_type), intent(in) :: contact
+   !> Adds a line for each interface at the end of a step; of many, one of the largest values.
+   subroutine add_step(lines, interfaces, record)
+      type(string_type), allocatable, intent(inout) :: lines(:)
+      type(contact_points_type), intent(in) :: interfaces(:)
       type(increment_record_type), intent(in) :: record
-      character(:), allocatable :: line, zone
+      character(:), allocatable :: zone
+      integer :: i
+
+      if (has_many(size(interfaces))) then
+         call append(lines, step_line(record, [(largest_at(step_quantities(i), record%contacts), &
+            i=1, size(step_quantities))], closed_words(record%contacts)))
+         return
+      end if
+      do i = 1, size(interfaces)
+         zone = zone_words('edge_contact', record%contacts(i))
+         if (zone == '') zone = zones('edge_contact', interfaces(i), record%contacts(i))
+         call append(lines, step_line(record, spread(i, 1, size(step_quantities)), &
+            interfaces(i)%name//': '//zone))
+      end do
+   end subroutine add_step
+
+   !> The end of a step: its quantities, each of an interface, and what is closed.
+   function step_line(record, interface_of, closed) result(line)
+      type(increment_record_type), intent(in) :: record
+      integer, intent(in) :: interface_of(:)    ! (step_quantities) index, 0 where none has a value
+      character(*), intent(in) :: closed
+      character(:), allocatable :: line
       character(step_column) :: columns(size(step_quantities) + 1)
       real(dp) :: value(1)
       integer :: k
 
+      columns = '-'
       columns(1) = to_text(record%time)
       do k = 1, size(step_quantities)
-         value = contact_values(step_quantities(k), contact)
-         columns(k + 1) = to_text(value(1))
-         if (ieee_is_nan(value(1)) .or. (step_quantities(k) == 'heat_rate' .and. &
-            .not. allocated(contact%heat_flux))) columns(k + 1) = '-'
+         if (interface_of(k) == 0) cycle
+         associate (contact => record%contacts(interface_of(k)))
+            if (step_quantities(k) == 'heat_rate' .and. .not. allocated(contact%heat_flux)) cycle
+            value = contact_values(step_quantities(k), contact)
+         end associate
+         if (.not. ieee_is_nan(value(1))) columns(k + 1) = to_text(value(1))
       end do
-      zone = zone_words('edge_contact', contact)
-      if (zone == '') zone = zones('edge_contact', points, contact)
       allocate (character(step_width) :: line)
-      write (line, '(i6, *(a))') record%step, adjustr(columns), '  ', points%name, ': ', zone
+      write (line, '(i6, *(a))') record%step, adjustr(columns), '  ', closed
       line = trim(line)
    end function step_line
+
+   !> How many of many interfaces are closed, closed in part and open.
+   pure function closed_words(contacts) result(words)
+      type(contact_record_type), intent(in) :: contacts(:)
+      character(:), allocatable :: words
+      integer :: closed(size(contacts)), i, points(size(contacts))
+
+      closed = [(count(contacts(i)%contact_state /= contact_open), i=1, size(contacts))]
+      points = [(size(contacts(i)%contact_state), i=1, size(contacts))]
+      words = to_text(count(closed == points))//' closed, '//to_text(count(closed > 0 .and. &
+         closed < points))//' in part, '//to_text(count(closed == 0))//' open'
+   end function closed_words
 
    !> Most lines that there can be.
    pure integer function most_lines(model)
@@ -195,7 +226,8 @@ contains
          if (interfaces == 0) most_lines = 1
          if (interfaces == 0 .or. has_many(interfaces)) most_lines = most_lines + 1 + &
             size(heat_names)
-         if (interfaces > 0 .and. steps > 1) most_lines = most_lines + 1 + told*steps
+         if (interfaces > 0 .and. steps > 1) most_lines = most_lines + &
+            merge(2, 1, has_many(interfaces)) + told*steps
          if (any(model%steps%cycle%steps > 0)) most_lines = most_lines + 1
          if (any(melts(model%materials))) most_lines = most_lines + 1
          if (allocated(model%couplings)) most_lines = most_lines + 1 + &
@@ -221,6 +253,8 @@ contains
       integer :: i
 
       if (self%increment == 0) return
+      if (size(self%steps) > 0 .and. has_many(size(interfaces))) call append(lines, &
+         'largest of all interfaces at the end of each step:')
       if (size(self%steps) > 0) call append(lines, step_head)
       do i = 1, size(self%steps)
          call append(lines, self%steps(i)%value)
@@ -323,7 +357,7 @@ contains
       integer :: q
 
       if (all(ieee_is_nan(errors%value)) .and. size(errors%corners) == 0) return
-      call append(lines, 'largest in body '//to_text(body))
+      call append(lines, 'largest in '//body_name(model, body))
       do q = 1, size(maxima)
          if (.not. ieee_is_nan(errors%value(q))) call append(lines, &
             summary_line(trim(maxima(q)%label), errors%value(q), uncertainty_words(errors, q), &
@@ -451,13 +485,10 @@ contains
       type(string_type), allocatable, intent(inout) :: lines(:)
       character(:), allocatable :: uncertainty
       real(dp) :: values(1)
-      integer :: closed(size(interfaces)), i, points(size(interfaces)), q
+      integer :: i, q
 
-      closed = [(count(self%contacts(i)%contact_state /= contact_open), i=1, size(interfaces))]
-      points = [(size(self%contacts(i)%contact_state), i=1, size(interfaces))]
       call append(lines, 'largest in '//to_text(size(interfaces))//' interfaces ('// &
-         to_text(count(closed == points))//' closed, '//to_text(count(closed > 0 .and. &
-         closed < points))//' in part, '//to_text(count(closed == 0))//' open); /contact of '// &
+         closed_words(self%contacts)//'); /contact of '// &
          'the result file has every one, the listing those at the end of each step')
       do q = 1, size(estimated)
          if (estimated(q)%resolution > 0.0_dp) cycle   ! an edge, which is at its own face

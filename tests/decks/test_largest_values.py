@@ -8,6 +8,7 @@ import pytest
 from blocks import write
 from deck_runs import run
 from deck_runs import solve_as_written as solve
+from pellets import rod
 from physics import material, mesh, nodes_of
 
 STATIC = ["*STEP", "*STATIC", "1., 1.", "*BOUNDARY"]
@@ -101,3 +102,28 @@ def test_without_uncertainties_nothing_is_told(tmp_path):
     assert process.returncode == 0 and "largest in body" not in process.stdout
     with h5py.File(deck.with_suffix(".vtkhdf")) as file:
         assert set(file["uncertainty"]) == {"reasons", "time"}
+
+
+def test_many_interfaces_have_the_largest_values_at_each_step(tmp_path):
+    """Those of three interfaces; a node that no element uses does not make the lowest temperature."""
+    cards = rod(6, counts=(2, 2, 1))
+    second = cards[cards.index("*STEP"):]
+    deck = write(tmp_path / "deck.inp", ["*NODE", "999999, 0., 0."], cards, second)
+    lines = run("run", deck, "--out", tmp_path).stdout.splitlines()
+    at = next(k for k, line in enumerate(lines) if "at the end of each step" in line)
+    with h5py.File(deck.with_suffix(".vtkhdf")) as file:
+        faces = list(file["contact"].values())
+        rows = [int(np.argmin(np.abs(file["history/time"][()] - end))) for end in (1.0, 2.0)]
+        largest = [[max(abs(face["normal_force"][row]) for face in faces),
+                    max(abs(face["heat_rate"][row]) for face in faces),
+                    max(face["pressure"][row].max() for face in faces)] for row in rows]
+        closed = [sum(bool(np.all(face["status"][row])) for face in faces) for row in rows]
+        temperature = file["VTKHDF/PointData/temperature"][()]
+        count_of_points = file["VTKHDF/NumberOfPoints"][0]
+    for step, line, expected, count in zip("12", lines[at + 2:at + 4], largest, closed, strict=True):
+        words = line.split()
+        assert words[0] == step and words[5:7] == [f"{count}", "closed,"]
+        assert [abs(float(word)) for word in words[2:5]] == pytest.approx(expected, rel=1e-5)
+    assert np.isnan(temperature).any()
+    lowest = float(next(line for line in lines if "lowest temperature" in line).split()[2])
+    assert lowest > 1.0 and lowest == pytest.approx(np.nanmin(temperature[-count_of_points:]), rel=1e-5)

@@ -5,6 +5,7 @@ import signal
 import subprocess
 import sys
 import time
+from pathlib import Path
 
 import h5py
 import numpy as np
@@ -108,6 +109,7 @@ def test_a_failed_check_is_no_exception(joint):
     result = thercon.run("joint.inp")
     assert result.status == 4 and list(result.checks["passed"]) == [True, False, True, False, True, True]
     assert result.checks["found"][1] == pytest.approx(200.0)
+    assert "2 checks passed, 2 failed" in Path("joint.lst").read_text()   # what none is expected of is none
     opened = thercon.open("joint")
     assert opened.status == 4
     for name in ("quantity", "where", "kind", "passed", "expected", "tolerance", "time", "found", "reason"):

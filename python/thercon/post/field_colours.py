@@ -191,8 +191,8 @@ def draw_bar(panels, layers):
     across = 0.03 * max(width, height) / (height if is_wide else width) / len(panels)
     below, above = np.any([layer.beyond for layer in layers], axis=0)
     bar = axes.figure.colorbar(layers[0].filled, ax=panels, location="bottom" if is_wide else "right",
-                               extend=extend_words(below, above), fraction=max(0.05, across), pad=0.02,
-                               aspect=30, shrink=0.9)
+                               extend=extend_words(below, above), fraction=max(0.05, across),
+                               pad=max(0.02, 0.3 * across), aspect=30, shrink=0.9)
     bar.ax.tick_params(direction="out", width=0.4, length=2, labelsize=7)
     bar.outline.set_linewidth(0.4)
     bar.set_ticks(LevelLocator(levels))

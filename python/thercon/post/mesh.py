@@ -110,8 +110,9 @@ def frame(axes, window, units, cut=False):
     axes.set_ylim(window[0, 1] - margin, window[1, 1] + margin)
     axes.set_xlabel(units.label("$x$", "length"))
     axes.set_ylabel(units.label("$y$", "length"))
-    narrow = np.ptp(window[:, 0]) < 0.6 * np.ptp(window[:, 1])
-    axes.locator_params(axis="x", nbins=3 if narrow else 6)
+    aspect = np.ptp(window[:, 0]) / np.ptp(window[:, 1])
+    labels = 6 if aspect >= 0.6 else int(np.clip(22.0 * aspect, 1, 3))  # that have room
+    axes.locator_params(axis="x", nbins=labels, min_n_ticks=min(labels, 2))
     axes.tick_params(direction="out", top=False, right=False)
     for side in ("top", "right"):
         axes.spines[side].set_visible(cut)

@@ -268,14 +268,18 @@ def share_words(share):
     return f"up to {100.0 * share:.2g} %" if share > TOLD else ""
 
 
+def completed(path):
+    """Return the path of a file, with the ending of a result where that is left out, as decks are
+    named."""
+    whole = Path(f"{path}.vtkhdf")
+    return whole if whole.is_file() and not Path(path).is_file() else Path(path)
+
+
 class Result:
     """A result file, open for reading; use it in a `with` statement."""
 
     def __init__(self, path):
-        self.path = Path(path)
-        whole = self.path.with_name(f"{self.path.name}.vtkhdf")  # named without its ending, as decks are
-        if whole.is_file() and not self.path.is_file():
-            self.path = whole
+        self.path = completed(path)
         if not self.path.exists():
             raise UserError(f"{path}: no such file")
         if self.path.is_dir():

@@ -9,7 +9,7 @@ module heat_checks
    use facing_faces, only: lie_on
    use kinds, only: dp
    use load_requests, only: request_type
-   use materials, only: follows_temperature, in_plane, of_expansion
+   use materials, only: follows_temperature, of_expansion
    use model, only: model_type
    use steps, only: dof_temperature, load_film_coefficient, load_film_sink, load_temperature, &
       solves_heat, solves_mechanics
@@ -199,9 +199,8 @@ contains
       real(dp) :: ends(2)                        !! [temperature]
       integer :: i, s
 
-      associate (start => model%initial_temperature)
-         ends = [minval(start, mask=in_plane(model%sections, size(start))), maxval(start, mask= &
-            in_plane(model%sections, size(start)))]
+      associate (start => model%initial_temperature, used => model%mesh%node_body > 0)
+         ends = [minval(start, mask=used), maxval(start, mask=used)]
       end associate
       do s = 1, size(model%steps)
          associate (boundaries => model%steps(s)%boundaries, loads => model%steps(s)%loads)

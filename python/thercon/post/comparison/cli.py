@@ -5,6 +5,7 @@ from pathlib import Path
 
 from .. import style
 from ..errors import UserError, program
+from ..result import completed
 from ..tables import write_table
 from . import from_csv, from_frd, from_result, mapping, picture, print_file, report
 from .blocks import listed
@@ -18,9 +19,10 @@ RESULT_ENDINGS = (".vtkhdf", ".hdf", ".h5", ".hdf5")
 
 def open_source(path, template, stack):
     """Return the source of a file, by its ending."""
-    if not Path(path).is_file():
+    path = completed(path)
+    if not path.is_file():
         raise UserError(f"{path}: no such file")
-    ending = Path(path).suffix.lower()
+    ending = path.suffix.lower()
     if ending in RESULT_ENDINGS:
         return from_result.read(path, stack)
     if ending == ".frd":
