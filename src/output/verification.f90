@@ -156,8 +156,8 @@ contains
       integer :: counts(3)
 
       associate (outcomes => self%outcomes)
-         counts = [count(outcomes%passed .and. outcomes%expects), count(outcomes%judged .and. .not. outcomes%passed), &
-            count(.not. outcomes%judged)]
+         counts = [count(outcomes%passed .and. outcomes%expects), count(outcomes%judged .and. &
+            .not. outcomes%passed), count(.not. outcomes%judged)]
       end associate
    end function counts
 
