@@ -196,6 +196,9 @@ contains
       integer :: i, k
 
       closes = previous%contact_state == contact_open .and. holds
+      ! The springs of soft faces would seem to hold a body that goes freely until it touches.
+      where (closes .and. sticking%soft%stiffness > 0.0_dp .and. system%motions%moves( &
+         system%normal)) sticking%soft%is_soft = .false.
       call sticking%keep_holding(holds, size(system%interface_start) - 1)
       if (.not. any(closes .and. system%tangent > 0)) return
       call hold_closed(system, state, sticking, is_held, error)

@@ -127,8 +127,8 @@ def test_nodes_where_both_faces_end_stay_opposite(tmp_path, kind, ends, short, r
                      for name, pair in (("slid", PAIRS[1]), ("drawn", ", PAIRING=SURFACES")))
     np.testing.assert_allclose(result["heat_flux"][:: 2 if kind == "CPE8" else 1],
                                other["heat_flux"], rtol=3e-3)
-    assert abs(result["temperature"] - other["temperature"]).max() < 2e-3 * other[
-        "temperature"].max()
+    assert np.nanmax(abs(result["temperature"] - other["temperature"])) < 2e-3 * np.nanmax(
+        other["temperature"])
 
 
 def test_tiny_strains_give_what_small_sliding_gives_where_the_pad_is_drawn(tmp_path):

@@ -181,6 +181,27 @@ def test_a_free_block_settles_on_the_reach_of_its_faces(tmp_path):
         ("U2", "UP.TOP", "LAST", -0.3 / YOUNG - of_exponential(0.1, 0.02, 0.001), 1e-9)])
 
 
+def test_faces_that_are_nearly_hard_close_as_hard_ones(tmp_path):
+    """A warm block that nothing holds along y, and against turning, falls on faces with friction: from
+    where it touches, slip counts on a layer of 1e9 as without one."""
+    found = []
+    for name, behavior in ("hard", []), ("soft", table([(0.0, 0.0), (1e9, 1.0)])):
+        deck = write(tmp_path / f"{name}.inp", [
+            *mesh("UP", [1.0, 1.5, 2.2, 3.0], [0.01, 0.7, 1.4], "CPE4", first=101),
+            *mesh("LOW", [0.0, 1.0, 2.0, 3.0, 4.0], [-1.0, 0.0], "CPE4"),
+            *material("UP", (YOUNG, 0.3), 1e-4), *material("LOW", (3 * YOUNG, 0.3), 1e-4),
+            "*SURFACE INTERACTION, NAME=I", *behavior, "*FRICTION", "0.2",
+            "*CONTACT PAIR, INTERACTION=I, NAME=FACE, PAIRING=SURFACES", "UP.BOTTOM, LOW.TOP",
+            "*INITIAL CONDITIONS, TYPE=TEMPERATURE", "UP, 0.", "LOW, 0.",
+            "*BOUNDARY", "LOW.BOTTOM, 1, 2", "UP.TOP, 1", "*STEP", "*STATIC", "1., 1.",
+            "*TEMPERATURE", "UP.TOP, 100.", "*DSLOAD", "UP.TOP, P, 20.", "*END STEP"])
+        with h5py.File(solve(deck)) as file:
+            found.append([file[f"contact/FACE/{name}"][-1] for name in ("slip", "pressure", "shear")])
+    assert abs(found[0][0]).max() > 1e-3
+    for hard, soft in zip(*found, strict=True):
+        np.testing.assert_allclose(soft, hard, atol=1e-5 * abs(hard).max(), rtol=0.0)
+
+
 def test_gaps_count_from_where_faces_begin_to_press(tmp_path):
     """So the conductance of the gas has no jump there: in heat alone, and as the blocks part."""
     gap, reach = 0.004, CLEARANCE * (1.0 + 1.0 / log(100.0))
