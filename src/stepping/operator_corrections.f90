@@ -17,7 +17,8 @@
 !> Operators that are far too soft, formed where points yielded or were molten that now resist, lead
 !> astray: what is left over grows. New ones are then formed at the pass that left least over. If
 !> these lead astray, too, or to nothing better, the next ones have half of the elasticity, with
-!> which points that unload do not diverge.
+!> which points that unload do not diverge, but slowly; once they have led to something better, the
+!> next ones have none of it again.
 module operator_corrections
    use anderson_mixing, only: mixing_type
    use element_kinds, only: element_node_count
@@ -340,6 +341,8 @@ contains
          if (last > 0.0_dp .and. left_over > max(grows*last, astray) .or. &
             self%asks_operators .and. is_renewed .and. self%least_left_over > contracts* &
             self%renewed_with) call lead_back(self)
+         if (self%asks_operators .and. .not. self%goes_back .and. left_over <= contracts* &
+            self%renewed_with) self%elastic_part = least_elastic_part
       end associate
    end subroutine judge_pass
 
