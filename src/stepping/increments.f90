@@ -136,7 +136,7 @@ contains
    end subroutine try_again
 
    !> What a run was carrying last before bodies that yield found no equilibrium under forces that
-   !> grow; nothing for others.
+   !> grow, or that no shorter increment has less of them; nothing for others.
    function words_of_collapse(run, model) result(words)
       type(simulation_type), intent(in) :: run
       type(model_type), intent(in) :: model
@@ -150,6 +150,11 @@ contains
          abs(run%state%force_load))
       if (.not. grows) return
       associate (control => run%control)
+         if (control%step_time <= 0.0_dp .and. .not. model%steps(control%step)%ramped) then
+            words = '; loads without an amplitude act at once, in the shortest increment, too: *STEP, '// &
+               'AMPLITUDE=RAMP ramps them'
+            return
+         end if
          words = '; collapse: the last load that was carried is that of time '// &
             to_text(control%step_start + control%step_time)//', '//percent(control%step_time/ &
             model%steps(control%step)%period, 4)//' of step '//to_text(control%step)

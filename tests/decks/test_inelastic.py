@@ -132,6 +132,15 @@ def test_collapse_is_told_with_the_last_load(cards, load, tmp_path):
     assert last == pytest.approx(load, rel=3e-3)
 
 
+def test_a_load_that_acts_at_once_is_no_collapse(tmp_path):
+    """It would strain the bar by 0.05 in the first increment, however short."""
+    deck = write(tmp_path / "deck.inp", [*bar("*PLASTIC", "200., 0.", "400., 0.1"), *pulled(
+        300.0, options=", AMPLITUDE=STEP")])
+    process = run("run", "--quiet", deck, "--out", tmp_path)
+    assert process.returncode == 2
+    assert "collapse" not in process.stderr and "*STEP, AMPLITUDE=RAMP ramps them" in process.stderr
+
+
 def test_bodies_that_yield_without_a_load_that_grows_do_not_collapse(tmp_path):
     cards = [*mesh("BODY", [0.0, 1.0], [0.0, 1.0], "CPS4"),
              *material("BODY", (YOUNG, POISSON), expansion=1e-5)]
