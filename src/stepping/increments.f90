@@ -151,8 +151,8 @@ contains
       if (.not. grows) return
       associate (control => run%control)
          if (control%step_time <= 0.0_dp .and. .not. model%steps(control%step)%ramped) then
-            words = '; loads without an amplitude act at once, in the shortest increment, too: *STEP, '// &
-               'AMPLITUDE=RAMP ramps them'
+            words = '; loads without an amplitude act at once, in the shortest increment, too: '// &
+               '*STEP, AMPLITUDE=RAMP ramps them'
             return
          end if
          words = '; collapse: the last load that was carried is that of time '// &
