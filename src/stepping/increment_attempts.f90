@@ -342,8 +342,13 @@ contains
          end if
          allocate (known(2))
          if (allocated(attempt%known)) known = attempt%known
-         call corrections%begin(model, run%bodies, attempt%stage, attempt%before, &
-            takes_past=abs(step%scheme%b(1)) > 0.0_dp)
+         if (allocated(attempt%omega_start) .and. .not. melts) then
+            call corrections%begin_again()
+         else
+            call corrections%begin(model, run%bodies, attempt%stage, attempt%before, &
+               takes_past=abs(step%scheme%b(1)) > 0.0_dp)
+         end if
+         corrections%is_rough = attempt%is_rough
          if (melts) call foresee_melting(run, model, attempt)
          call reduce_heat(run, model, attempt, error)
          if (allocated(error)) return

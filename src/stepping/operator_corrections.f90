@@ -45,6 +45,7 @@ module operator_corrections
    public :: corrections_type
 
    real(dp), parameter :: settled = 1.0e-9_dp  !! part of heat and forces that is left over
+   real(dp), parameter :: roughly = 1.0e-4_dp  !! the same of a rough solution
    !> Part of terms that cancel which is their rounding: sqrt(n) epsilon in a solution of n = 2e5
    !> unknowns
    real(dp), parameter :: rounding = 1.0e-13_dp
@@ -88,6 +89,7 @@ module operator_corrections
       integer :: failed_element = 0                !! index of the first whose law found no stress
       integer, public :: passes = 0                !! of the stage
       logical, public :: is_settled = .false.      !! whether a solution is that of its corrections
+      logical, public :: is_rough = .false.        !! whether a rough solution will do
       logical, public :: asks_operators = .false.  !! whether operators are to be formed at it
       logical, public :: goes_back = .false.       !! or at the pass that left least over
       logical, public :: asks_capacity = .false.   !! whether C alone is, where other nodes melt
@@ -98,6 +100,7 @@ module operator_corrections
    contains
       procedure :: prepare
       procedure :: begin
+      procedure :: begin_again
       procedure :: give
       procedure :: correct
       procedure :: renew
@@ -183,15 +186,8 @@ contains
       logical, intent(in) :: takes_past                      !! whether K T_i stands in eq. (3.4)
       logical :: goes_on
 
+      call self%begin_again()
       self%stage = stage
-      self%passes = 0
-      self%renewed_at = 0
-      self%slow_passes = 0
-      self%left_over = 0.0_dp
-      self%least_left_over = huge(1.0_dp)
-      self%elastic_part = least_elastic_part
-      call start_mixing(self)
-      if (allocated(self%scale)) deallocate (self%scale)
       if (allocated(self%strain_before)) deallocate (self%strain_before)
       self%history%law_interval_type = stage%passing
       self%history%duration = stage%duration
@@ -220,6 +216,21 @@ contains
             before%increment_size*(before%corrections - before%corrections_before)
       end if
    end subroutine begin
+
+   !> Starts a stage that is solved again from the corrections of its last solution, so that they,
+   !> and the operators, settle with what it is solved again for.
+   subroutine begin_again(self)
+      class(corrections_type), intent(inout) :: self
+
+      self%passes = 0
+      self%renewed_at = 0
+      self%slow_passes = 0
+      self%left_over = 0.0_dp
+      self%least_left_over = huge(1.0_dp)
+      self%elastic_part = least_elastic_part
+      call start_mixing(self)
+      if (allocated(self%scale)) deallocate (self%scale)
+   end subroutine begin_again
 
    !> Whether laws go on from displacements that go on as they did, whatever the operators were.
    !> Plastic flow stops where loads turn round: without a time it is not foreseen.
@@ -282,7 +293,8 @@ contains
       self%goes_back = .false.
       self%asks_capacity = .false.
       self%melting%jumps = .false.
-      self%is_settled = self%failed_element == 0 .and. self%left_over <= settled
+      self%is_settled = self%failed_element == 0 .and. self%left_over <= merge(roughly, settled, &
+         self%is_rough)
       if (self%is_settled) return
       if (self%failed_element > 0) then
          call lead_back(self)
