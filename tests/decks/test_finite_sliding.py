@@ -131,6 +131,33 @@ def test_nodes_where_both_faces_end_stay_opposite(tmp_path, kind, ends, short, r
         other["temperature"])
 
 
+@pytest.mark.parametrize("count", [3, 5])
+@pytest.mark.parametrize("friction", [0.1, 0.3])
+def test_hot_blocks_that_yield_follow_sliding_in_whole_increments(tmp_path, friction, count):
+    """Strains are 4e-3, and so much do faces that slide a little differ from those that do not."""
+    found = []
+    for name, pair in ("slid", PAIRS[0]), ("drawn", ", PAIRING=SURFACES"):
+        stores = {"density": 7.8e-9, "specific_heat": 4.6e5}
+        hot = material("UP", (2e5, 0.3), 1.2e-5, 50.0, **stores)
+        found.append(final(tmp_path, name, [
+            *mesh("UP", np.linspace(1.0, 3.6, count + 1), [0.0, 1.4], "CPE4", first=101),
+            *mesh("LOW", np.linspace(0.0, 5.0, 6), [-1.5, 0.0], "CPE4"),
+            *hot[:-1], "*PLASTIC", "100., 0.", "200., 0.05", hot[-1],
+            *material("LOW", (1e5, 0.3), 1.2e-5, 50.0, **stores),
+            "*SURFACE INTERACTION, NAME=I", "*FRICTION", repr(friction), "*GAP LAW, TYPE=GAS", "0.02, 0.01",
+            "*GAP LAW, TYPE=POWER", "2., 0.05, 0.9",
+            f"*CONTACT PAIR, INTERACTION=I, NAME=FACE{pair}", "UP.BOTTOM, LOW.TOP",
+            "*INITIAL CONDITIONS, TYPE=TEMPERATURE", "UP, 20.", "LOW, 20.",
+            "*BOUNDARY", "LOW.BOTTOM, 1, 2", "*STEP",
+            "*COUPLED TEMPERATURE-DISPLACEMENT, DIRECT, STEADY STATE", "0.25, 1.", "*BOUNDARY",
+            "UP.TOP, 1, 1, 0.", "UP.TOP, 2, 2, -0.002", "UP.TOP, 11, 11, 280.",
+            "LOW.BOTTOM, 11, 11, 20.", "*END STEP"]))
+    for name in "pressure", "heat_flux":
+        np.testing.assert_allclose(found[0][name], found[1][name], rtol=0.0,
+                                   atol=0.02 * found[1][name].max())
+    assert found[0]["von_mises"].max() > 100.0
+
+
 def test_tiny_strains_give_what_small_sliding_gives_where_the_pad_is_drawn(tmp_path):
     slid = final(tmp_path, "slid", sliding(0.37, scale=SCALE))
     drawn = final(tmp_path, "drawn", sliding(0, ", PAIRING=SURFACES", START + 0.37, SCALE))
