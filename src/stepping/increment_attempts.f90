@@ -304,7 +304,7 @@ contains
          allocated(run%bodies%worn)
    end function solves_repeatedly
 
-   !> Takes the slip of a solution for its wear, unless it is that with which it was solved.
+   !> Takes the slip of a solution for its wear, and whether this is what it was solved with.
    subroutine follow_wear(run, attempt, is_same)
       type(simulation_type), intent(in) :: run
       type(attempt_type), intent(inout) :: attempt
@@ -319,7 +319,7 @@ contains
       ! Beside the bodies' own compliance that of little wear is rounding.
       if (is_same) is_same = all(abs(by_pressure - attempt%wear_by_pressure) <= &
          same_wear*max(maxval(by_pressure), body_compliance(run%bodies)))
-      if (.not. is_same) attempt%wear_by_pressure = by_pressure
+      attempt%wear_by_pressure = by_pressure
    end subroutine follow_wear
 
    !> Solves the fields of a stage until its corrections are those of its solution.

@@ -157,6 +157,25 @@ def test_a_pad_that_is_only_pressed_needs_no_smaller_increment(tmp_path, rate):
     assert state(tmp_path, cards)["normal_force"][-1] == pytest.approx(16.0, rel=1e-5)
 
 
+@pytest.mark.parametrize("tail", ["FULL", "SPARSE"])
+@pytest.mark.parametrize("rate", [1e-7, 1e-10])
+def test_however_little_faces_wear_it_is_k_p_and_the_slip(tmp_path, rate, tail):
+    """Of an elastic block that is pressed and pushed, in each increment: slip is not uniform."""
+    found = state(tmp_path, [
+        *mesh("UP", [0.5, 1.3, 2.0], [0.0, 1.0], "CPE8", first=101),
+        *mesh("LOW", [0.0, 1.0, 2.0, 3.0], [-1.0, 0.0], "CPE8"),
+        *material("UP", (2e5, 0.3)), *material("LOW", (1e5, 0.3)),
+        "*SURFACE INTERACTION, NAME=I", "*FRICTION", "0.1", "*WEAR", f"{rate!r}",
+        "*CONTACT PAIR, INTERACTION=I, NAME=C, SLIDING=FINITE", "UP.BOTTOM, LOW.TOP",
+        f"*SOLVER, TAIL={tail}", "*BOUNDARY", "LOW.BOTTOM, 1, 2", "*STEP", "*STATIC, DIRECT",
+        "0.25, 1.", "*BOUNDARY", "UP.TOP, 1, 1, 0.005", "*DSLOAD", "UP.TOP, P, 300.", "*END STEP"])
+    slip = np.abs(np.diff(found["slip"], axis=0))
+    depth = np.diff(found["wear_slave"], axis=0)
+    assert depth.max() > 0.0
+    np.testing.assert_allclose(depth, rate * found["pressure"][1:] * slip, rtol=1e-7,
+                               atol=1e-7 * depth.max())
+
+
 def test_a_motion_to_and_fro_wears_both_ways(tmp_path):
     found = state(tmp_path, bar(0.1, force=PRESSURE, steps=2))
     assert found["wear_slave"][-1] == pytest.approx(2 * K * PRESSURE * SPEED, rel=1e-8)
