@@ -307,11 +307,18 @@ def test_faces_that_slide_are_drawn_where_they_are_with_their_forces(tabulate, r
         contact["normal_force"] = np.arange(1.0, 1.0 + len(contact["pressure"]))
         points["displacement"][:, 0] = 3.0
         x = contact["x"][()]
+        contact["gap"][0, 0] = np.nan   # no master is opposite
+        contact["gap"][1, :] = np.nan
+        gap, weight = contact["gap"][0, 1:], contact["weight"][1:]
     tabulate("profiles", result)
     np.testing.assert_allclose(numbers(table(tmp_path, "case.profiles.csv")["x"]), x + 3.0)
     tabulate("courses", result)
     forces = numbers(table(tmp_path, "case.courses.csv")["force_normal"])
     np.testing.assert_array_equal(forces, np.arange(1.0, 1.0 + len(forces)))
+    gaps = [numbers(table(tmp_path, "case.courses.csv")[f"gap{end}"]) for end in ("", "_min", "_max")]
+    np.testing.assert_allclose([each[0] for each in gaps],
+                               [gap @ weight / weight.sum(), gap.min(), gap.max()])
+    assert np.isnan([each[1] for each in gaps]).all() and np.isfinite([each[2:] for each in gaps]).all()
     with h5py.File(result, "r+") as file:
         del file["contact/CYLINDER"].attrs["sliding"]
     tabulate("profiles", result)

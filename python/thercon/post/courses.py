@@ -114,8 +114,7 @@ class Picture:
         for words, values in curves:
             colour, line = LOOKS[ORDER.get(words.strip("|\N{MINUS SIGN}"), 0)]
             if values.ndim == 2:
-                axes.fill_between(self.time, values.min(axis=1), values.max(axis=1), color=colour,
-                                  alpha=0.15, linewidth=0)
+                axes.fill_between(self.time, *ends(values), color=colour, alpha=0.15, linewidth=0)
             axes.plot(self.time, self.mean(values), color=colour, ls=line, label=words or None)
         if len(curves) > 1:
             axes.legend(loc="best", handlelength=1.8)
@@ -131,11 +130,14 @@ class Picture:
         style.log_ticks(axes.yaxis, DECADES * high, 1.5 * high)
 
     def mean(self, values):
-        """Return the mean of values over the face, by the areas of its contact points."""
+        """Return the mean of values over the face, by the areas of its contact points; those without
+        a master have no gap."""
         if values.ndim == 1:
             return values
-        weight = self.contact["weight"]
-        return values @ weight / np.sum(weight)
+        weight = np.where(np.isnan(values), 0.0, self.contact["weight"])
+        whole = weight.sum(axis=1)
+        return np.divide(np.nansum(values * weight, axis=1), whole, out=np.full(len(values), np.nan),
+                         where=whole > 0.0)
 
     def table(self):
         """Return the curves as columns, means and ranges over the face."""
@@ -145,8 +147,13 @@ class Picture:
                 key = "_".join([name, *words.split()])
                 columns[key] = self.mean(values)
                 if values.ndim == 2:
-                    columns |= {f"{key}_min": values.min(axis=1), f"{key}_max": values.max(axis=1)}
+                    columns |= dict(zip((f"{key}_min", f"{key}_max"), ends(values)))
         return columns
+
+
+def ends(values):
+    """Return the smallest and the largest value of each row, NaN where it has none."""
+    return np.fmin.reduce(values, axis=1), np.fmax.reduce(values, axis=1)
 
 
 def seen(curves):
