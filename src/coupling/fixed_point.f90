@@ -8,6 +8,7 @@ module fixed_point
    use anderson_mixing, only: mixing_type
    use conductance_graph, only: conductance_graph_type
    use kinds, only: dp
+   use path_steps, only: path_step_type
    implicit none
    private
    public :: accelerator_type, pass_type, picard_type, zaitsev_type, point_residual, &
@@ -34,6 +35,7 @@ module fixed_point
       !> it, and the contact points' own derivatives
       real(dp), allocatable :: step(:), own(:)
       real(dp) :: time_step = huge(1.0_dp)  !! tau of this step
+      type(path_step_type), allocatable :: path_step   !! the same on a path, with its equation
       !> (m) derivative of the openings by the load factor at constant coordinates, on a branch
       real(dp), allocatable :: by_factor(:)
    contains
@@ -44,7 +46,6 @@ module fixed_point
    type, abstract :: accelerator_type
       real(dp), allocatable :: g(:)   !! (m) part of the way that each contact point goes
       integer :: kept = 0 !! contact points whose g was kept in the last pass, eq. (4.2) giving none
-      logical :: may_follow_path = .true.   !! a path needs the derivative as a matrix
       logical :: follows_path = .false.   !! on a continuous path of conductances (homotopy)
       logical :: retreats = .false. !! whether next goes on from a pass whose zones were not found
    contains

@@ -18,7 +18,7 @@
 module homotopy
    use conductance_graph, only: conductance_graph_type
    use kinds, only: dp
-   use path_steps, only: coordinate_rate, moved_along, path_step_type, solve_on_path
+   use path_steps, only: coordinate_rate, moved_along, path_equation_type, path_step_type
    implicit none
    private
    public :: homotopy_type
@@ -55,6 +55,7 @@ module homotopy
       real(dp), private :: way = huge(1.0_dp)     !! length of the move to the trial
    contains
       procedure :: begin
+      procedure :: equation
       procedure :: next
       procedure :: retreat
    end type homotopy_type
@@ -95,7 +96,7 @@ contains
    end subroutine restart
 
    !> The coordinates of the next pass.
-   subroutine next(self, graph, body, opening, derivative, coordinate)
+   subroutine next(self, graph, body, opening, derivative, coordinate, found)
       class(homotopy_type), intent(inout) :: self           !! the path
       type(conductance_graph_type), intent(in) :: graph(:)  !! (m) laws of the points
       real(dp), intent(in) :: body(:)         !! (m) of the bodies about a point [as omega]
@@ -103,17 +104,22 @@ contains
       !> (m, m) its derivative by omega; not allocated where there is none
       real(dp), allocatable, intent(in) :: derivative(:, :)
       real(dp), intent(out) :: coordinate(:)                !! (m) z [length]
+      !> step by products, where the derivative is not formed
+      type(path_step_type), allocatable, intent(in), optional :: found
+      type(path_equation_type) :: equation
       type(path_step_type) :: step
 
-      if (self%base_t <= 0.0_dp .and. self%trial_t <= 0.0_dp) self%length = max(self%length, &
-         maxval(abs(opening)))
+      call self%equation(graph, body, opening, equation)
       if (self%step < shortest_step) then
          call restart(self, graph, opening)
          coordinate = self%trial
          return
       end if
-      step%sound = allocated(derivative)
-      if (step%sound) call find_step(self, graph, body, opening, derivative, step)
+      if (allocated(derivative)) call equation%solve(derivative, step)
+      if (present(found)) then
+         if (allocated(found)) step = found
+      end if
+      if (step%sound) call turn(self, step)
       if (step%sound) call judge(self, step)
       if (.not. step%sound) then
          self%step = 0.5_dp*self%step
@@ -206,34 +212,37 @@ contains
       if (from_t + step%change(n + 1) >= 1.0_dp) self%trial_t = 1.0_dp
    end subroutine move
 
-   !> Newton's correction of the trial, at t = 1 with t held, elsewhere normal to the path, whose
-   !> tangent points the way that it goes on.
-   subroutine find_step(self, graph, body, opening, derivative, step)
-      class(homotopy_type), intent(in) :: self
-      type(conductance_graph_type), intent(in) :: graph(:)
-      real(dp), intent(in) :: body(:), opening(:), derivative(:, :)
-      type(path_step_type), intent(out) :: step
-      real(dp) :: matrix(size(opening) + 1, size(opening) + 1), rate
-      integer :: k, n
+   !> The equation of Newton's correction of the trial, at t = 1 with t held, elsewhere as near as
+   !> the tangent allows.
+   subroutine equation(self, graph, body, opening, found)
+      class(homotopy_type), intent(inout) :: self           !! the path
+      type(conductance_graph_type), intent(in) :: graph(:)  !! (m) laws of the points
+      real(dp), intent(in) :: body(:)         !! (m) of the bodies about a point [as omega]
+      real(dp), intent(in) :: opening(:)                    !! (m) H(L(omega)) of the pass [length]
+      type(path_equation_type), intent(out) :: found
+      real(dp) :: rate(size(opening))
+      integer :: k
 
-      n = size(opening)
-      do k = 1, n
-         associate (advance => graph(k)%advance(self%trial(k)), &
-            slope => graph(k)%derivative(self%trial(k)))
-            rate = coordinate_rate(graph(k), self%trial(k), body(k), self%length)
-            matrix(:n, k) = -self%trial_t*rate*slope*derivative(:, k)
-            matrix(k, k) = matrix(k, k) + rate*advance
-         end associate
-      end do
-      matrix(:n, n + 1) = self%first - opening
-      matrix(n + 1, :) = self%tangent
-      if (self%trial_t >= 1.0_dp) matrix(n + 1, :) = [(0.0_dp, k=1, n), 1.0_dp]
-      call solve_on_path(matrix, -(graph%opening(self%trial) - (1.0_dp - self%trial_t)* &
-         self%first - self%trial_t*opening), step)
-      if (.not. step%sound) return
+      if (self%base_t <= 0.0_dp .and. self%trial_t <= 0.0_dp) self%length = max(self%length, &
+         maxval(abs(opening)))
+      rate = [(coordinate_rate(graph(k), self%trial(k), body(k), self%length), k=1, size(rate))]
+      found%advance = rate*graph%advance(self%trial)
+      found%slope = self%trial_t*rate*graph%derivative(self%trial)
+      found%by_parameter = self%first - opening
+      found%border = self%tangent
+      if (self%trial_t >= 1.0_dp) found%border = [(0.0_dp, k=1, size(rate)), 1.0_dp]
+      found%rest = -(graph%opening(self%trial) - (1.0_dp - self%trial_t)*self%first - &
+         self%trial_t*opening)
+   end subroutine equation
+
+   !> Turns the tangent the way that the path goes on, and the correction normal to it.
+   subroutine turn(self, step)
+      class(homotopy_type), intent(in) :: self
+      type(path_step_type), intent(inout) :: step
+
       if (step%is_reversed) step%tangent = -step%tangent
       if (self%trial_t < 1.0_dp) step%change = step%change - &
          dot_product(step%change, step%tangent)*step%tangent
-   end subroutine find_step
+   end subroutine turn
 
 end module homotopy

@@ -213,7 +213,6 @@ contains
       allocate (passes(0))
       call begin_passes(bodies, trial%data, trial%next%omega, trial%workspace)
       call make_accelerator(controls, size(turns), accelerator)
-      if (heat%schur%is_sparse()) accelerator%may_follow_path = .false.
       associate (data => trial%data, workspace => trial%workspace, next => trial%next, &
          pass => trial%workspace%pass, record => trial%workspace%record)
          do i = 1, huge(i) - 1
@@ -332,11 +331,12 @@ contains
       associate (pass => trial%workspace%pass)
          if (allocated(pass%derivative)) deallocate (pass%derivative)
          if (allocated(pass%step)) deallocate (pass%step)
+         if (allocated(pass%path_step)) deallocate (pass%path_step)
          if (accelerator%asks_derivative(pass)) then
             if (heat%schur%is_sparse()) then
                select type (accelerator)
                type is (newton_type)
-                  pass%time_step = accelerator%time_step_of(pass)
+                  call accelerator%prepare_step(pass)
                end select
                call find_newton_step(bodies, heat, trial)
             else

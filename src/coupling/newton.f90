@@ -16,13 +16,14 @@
 !> = -r whose tau grows as |r| falls (Kelley & Keyes 1998). That leads to a state which is stable in
 !> this sense, and there the steps are Newton's again. Where all passes are used up, the method
 !> follows a path that leads to a solution wherever it starts (homotopy). On a sparse tail J is not
-!> formed: steps come from products with it (newton_products), and there is no path.
+!> formed: steps, also those of the path, come from products with it (newton_products).
 module newton
    use conductance_graph, only: conductance_graph_type
    use dense, only: eigenvalues, lu_type
    use fixed_point, only: accelerator_type, pass_type
    use homotopy, only: homotopy_type
    use kinds, only: dp
+   use path_steps, only: path_step_type
    implicit none
    private
    public :: newton_type, inertias, leaves_rest, longest_time_step
@@ -55,7 +56,7 @@ module newton
       real(dp), private :: time_step = huge(1.0_dp)    !! tau; huge for Newton's method
    contains
       procedure :: asks_derivative
-      procedure :: time_step_of
+      procedure :: prepare_step
       procedure :: next
    end type newton_type
 
@@ -72,6 +73,20 @@ contains
       asks = takes(self, pass)
       if (asks) asks = any(abs(pass%graph%derivative(pass%coordinates())) > 0.0_dp)
    end function asks_derivative
+
+   !> What a step by products needs of the method: tau, or on a path its equation.
+   subroutine prepare_step(self, pass)
+      class(newton_type), intent(inout) :: self   !! memory of the method
+      type(pass_type), intent(inout) :: pass      !! the last pass
+
+      if (allocated(self%path)) then
+         pass%path_step = path_step_type()
+         allocate (pass%path_step%equation)
+         call self%path%equation(pass%graph, self%body, pass%opening, pass%path_step%equation)
+      else
+         pass%time_step = time_step_of(self, pass)
+      end if
+   end subroutine prepare_step
 
    !> tau of the step from a pass that is taken.
    pure real(dp) function time_step_of(self, pass) result(tau)
@@ -136,12 +151,13 @@ contains
          call retreat(self, pass)
          return
       else if (allocated(self%path)) then
-         call self%path%next(pass%graph, self%body, pass%opening, pass%derivative, pass%coordinate)
+         call self%path%next(pass%graph, self%body, pass%opening, pass%derivative, &
+            pass%coordinate, pass%path_step)
          pass%omega = pass%graph%omega(pass%coordinate)
          return
       end if
       if (takes(self, pass)) then
-         self%time_step = self%time_step_of(pass)
+         self%time_step = time_step_of(self, pass)
          if (allocated(pass%step)) self%time_step = pass%time_step
          call take(self, pass)
          call make_step(self, pass%graph)
@@ -161,7 +177,7 @@ contains
          end if
       end if
       call try(self, pass)
-      if (pass%iteration < self%most_steps .or. .not. self%may_follow_path) return
+      if (pass%iteration < self%most_steps) return
       allocate (self%path)
       self%follows_path = .true.
       call self%path%begin(pass%graph, pass%opening, pass%coordinate)

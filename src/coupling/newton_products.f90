@@ -1,4 +1,5 @@
-!> Newton's step where a matrix between all contact points is not formed (newton):
+!> Newton's step where a matrix between all contact points is not formed (newton), and likewise that
+!> of a path (homotopy):
 !>
 !>    (M/tau + J) dz = -r,    J = diag(opening') - D (I - K)^-1 diag(omega'),
 !>
@@ -19,6 +20,7 @@ module newton_products
    use increment_data, only: trial_type
    use kinds, only: dp
    use newton, only: inertias, leaves_rest, longest_time_step
+   use path_steps, only: path_step_type
    use reduced_bodies, only: reduced_bodies_type
    implicit none
    private
@@ -40,16 +42,16 @@ module newton_products
 
 contains
 
-   !> The step of the last pass, and what else Newton's method takes from there: the contact points'
-   !> own derivatives and the conductances of the bodies about them. No step where J does not exist.
+   !> The step of the last pass, Newton's or that of a path, and what else the method takes from
+   !> there: the contact points' own derivatives and the conductances of the bodies about them. No
+   !> step where D does not exist.
    subroutine find_newton_step(bodies, heat, trial)
       type(reduced_bodies_type), intent(in) :: bodies
       type(heat_reduction_type), intent(in) :: heat
       !> as the pass left it; with tau, which is shortened to where the step leads on
       type(trial_type), intent(inout) :: trial
       type(opening_tangent_type) :: tangent
-      real(dp), dimension(size(trial%next%omega)) :: advance, diagonal, inertia, rest, slope
-      logical :: is_left(size(trial%next%omega)), sound
+      logical :: sound
 
       call make_tangent(bodies%equilibrium%contact, trial%workspace%contact, trial%next%contact, &
          tangent%contact, sound)
@@ -63,6 +65,24 @@ contains
          tangent%coordinate = pass%coordinates()
          tangent%rate = heat_by_omega(bodies, trial%data, trial%workspace, trial%next%jump)
          call find_own(bodies, heat, trial, tangent, pass%own, pass%body)
+         if (allocated(pass%path_step)) then
+            call step_on_path(bodies, heat, trial, tangent, pass%path_step)
+         else
+            call step_by_newton(bodies, heat, trial, tangent)
+         end if
+      end associate
+   end subroutine find_newton_step
+
+   !> Newton's step.
+   subroutine step_by_newton(bodies, heat, trial, tangent)
+      type(reduced_bodies_type), intent(in) :: bodies
+      type(heat_reduction_type), intent(in) :: heat
+      type(trial_type), intent(inout) :: trial
+      type(opening_tangent_type), intent(in) :: tangent
+      real(dp), dimension(size(trial%next%omega)) :: advance, diagonal, inertia, rest, slope
+      logical :: is_left(size(trial%next%omega))
+
+      associate (pass => trial%workspace%pass)
          advance = pass%graph%advance(tangent%coordinate)
          slope = pass%graph%derivative(tangent%coordinate)
          rest = pass%graph%opening(tangent%coordinate) - pass%opening
@@ -91,13 +111,10 @@ contains
       !> J times a change of the coordinates.
       function by_jacobian(change) result(product)
          real(dp), intent(in) :: change(:)
-         real(dp) :: product(size(change)), of_opening(size(change), 1)
-         real(dp), allocatable :: of_tail(:, :)
+         real(dp) :: product(size(change))
 
-         call find_changes(bodies, heat, trial, tangent, tangent%rate*with_temperatures(bodies, &
-            heat, trial%workspace, tangent%coordinate, tangent%rate, slope*change, &
-            tangent%friction), of_tail, of_opening)
-         product = merge(change, advance*change - of_opening(:, 1), is_left)
+         product = merge(change, advance*change - by_laws(bodies, heat, trial, tangent, &
+            slope*change), is_left)
       end function by_jacobian
 
       function step_of() result(step)
@@ -123,7 +140,65 @@ contains
          tau = huge(1.0_dp)
          if (modes%found) tau = longest_time_step(modes%value)
       end function stable_time_step
-   end subroutine find_newton_step
+   end subroutine step_by_newton
+
+   !> Correction and tangent of a path.
+   subroutine step_on_path(bodies, heat, trial, tangent, step)
+      type(reduced_bodies_type), intent(in) :: bodies
+      type(heat_reduction_type), intent(in) :: heat
+      type(trial_type), intent(in) :: trial
+      type(opening_tangent_type), intent(in) :: tangent
+      type(path_step_type), intent(inout) :: step     ! with its equation
+      real(dp), dimension(size(step%equation%border)) :: product, scale
+      real(dp) :: x(size(scale), 2)
+      type(gmres_type) :: gmres
+      integer :: k, n
+
+      associate (equation => step%equation, own => trial%workspace%pass%own)
+         n = size(own)
+         ! Positive, for the sign of the determinant.
+         scale(:n) = abs(equation%advance - own*equation%slope)
+         where (scale(:n) < least_own*maxval(equation%advance)) scale(:n) = maxval(equation%advance)
+         scale(n + 1) = 1.0_dp
+         x = 0.0_dp
+         x(:n, 1) = equation%rest/scale(:n)
+         x(n + 1, 2) = 1.0_dp
+         step%sound = .true.
+         do k = 1, 2
+            call gmres%begin(x(:, k), solved, min(n + 1, most_products))
+            do while (gmres%wants_product)
+               associate (vector => gmres%vector)
+                  product(:n) = equation%advance*vector(:n) - by_laws(bodies, heat, trial, &
+                     tangent, equation%slope*vector(:n)) + equation%by_parameter*vector(n + 1)
+                  product(n + 1) = dot_product(equation%border, vector)
+               end associate
+               call gmres%take(product/scale)
+            end do
+            x(:, k) = gmres%solution()
+            step%sound = step%sound .and. gmres%residual <= rough
+         end do
+      end associate
+      if (.not. step%sound) return
+      step%change = x(:, 1)
+      step%tangent = x(:, 2)/norm2(x(:, 2))
+      step%is_reversed = gmres%negative_determinant()
+   end subroutine step_on_path
+
+   !> Changes of the openings with the laws' own changes of the conductances: D (I - K)^-1.
+   function by_laws(bodies, heat, trial, tangent, change) result(of_opening)
+      type(reduced_bodies_type), intent(in) :: bodies
+      type(heat_reduction_type), intent(in) :: heat
+      type(trial_type), intent(in) :: trial
+      type(opening_tangent_type), intent(in) :: tangent
+      real(dp), intent(in) :: change(:)                        ! (m)
+      real(dp) :: of_opening(size(change)), found(size(change), 1)
+      real(dp), allocatable :: of_tail(:, :)
+
+      call find_changes(bodies, heat, trial, tangent, tangent%rate*with_temperatures(bodies, &
+         heat, trial%workspace, tangent%coordinate, tangent%rate, change, tangent%friction), &
+         of_tail, found)
+      of_opening = found(:, 1)
+   end function by_laws
 
    !> Own derivatives of the openings, and the conductances of the bodies about the contact points,
    !> 1 where that means nothing.

@@ -8,7 +8,23 @@ module path_steps
    use kinds, only: dp
    implicit none
    private
-   public :: path_step_type, coordinate_rate, solve_on_path, moved_along, distance
+   public :: path_equation_type, path_step_type, coordinate_rate, solve_on_path, moved_along, &
+      distance
+
+   !> The equations of a step, whose unknowns are lengths along the graphs and the parameter: beside
+   !> the derivative D of the openings by the conductances
+   !>
+   !>    [diag(advance) - D diag(slope)  by_parameter] step = [rest]
+   !>    [               border                      ]        [    ]
+   type :: path_equation_type
+      real(dp), allocatable :: advance(:)       !! (n) of the openings [length]
+      real(dp), allocatable :: slope(:)         !! (n) of the conductances
+      real(dp), allocatable :: by_parameter(:)  !! (n) [length]
+      real(dp), allocatable :: border(:)        !! (n + 1)
+      real(dp), allocatable :: rest(:)          !! (n) what the equations lack [length]
+   contains
+      procedure :: solve
+   end type path_equation_type
 
    !> Newton's correction of a trial, and the way that the path goes on.
    type :: path_step_type
@@ -16,9 +32,28 @@ module path_steps
       real(dp), allocatable :: change(:)       !! (n + 1) the correction
       real(dp), allocatable :: tangent(:)      !! (n + 1) of the path, of length 1
       logical :: is_reversed = .false.         !! whether det [F_z F_t; border] is negative
+      type(path_equation_type), allocatable :: equation   !! where products solve it
    end type path_step_type
 
 contains
+
+   !> The step where D is a matrix.
+   subroutine solve(self, derivative, step)
+      class(path_equation_type), intent(in) :: self
+      real(dp), intent(in) :: derivative(:, :)   !! (n, n) D
+      type(path_step_type), intent(out) :: step
+      real(dp) :: matrix(size(self%border), size(self%border))
+      integer :: k, n
+
+      n = size(self%rest)
+      do k = 1, n
+         matrix(:n, k) = -self%slope(k)*derivative(:, k)
+         matrix(k, k) = matrix(k, k) + self%advance(k)
+      end do
+      matrix(:n, n + 1) = self%by_parameter
+      matrix(n + 1, :) = self%border
+      call solve_on_path(matrix, self%rest, step)
+   end subroutine solve
 
    !> Change of the coordinate for the length along the graph.
    pure function coordinate_rate(graph, coordinate, body, length) result(rate)

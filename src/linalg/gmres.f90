@@ -30,6 +30,7 @@ module gmres
       procedure :: begin
       procedure :: take
       procedure :: solution
+      procedure :: negative_determinant
    end type gmres_type
 
 contains
@@ -47,6 +48,7 @@ contains
       self%rest(1) = norm2(rhs)
       self%wants_product = self%rest(1) > 0.0_dp .and. ieee_is_finite(self%rest(1))
       if (self%wants_product) self%vector = rhs/self%rest(1)
+      if (self%rest(1) <= 0.0_dp) self%residual = 0.0_dp
    end subroutine begin
 
    !> Takes the product of the vector. No more are wanted when the residual is small enough, the
@@ -105,5 +107,15 @@ contains
       end do
       x = matmul(self%basis(:, :self%products), part)
    end function solution
+
+   !> Whether det A is negative on the space of the products. Real eigenvalues below 0 are in it where
+   !> the solution needs them; of several that are equal one is.
+   pure logical function negative_determinant(self)
+      class(gmres_type), intent(in) :: self
+
+      negative_determinant = .false.
+      ! Rotations keep the determinant and leave a positive diagonal, but for the last row.
+      if (self%products > 0) negative_determinant = self%rotation(1, self%products) < 0.0_dp
+   end function negative_determinant
 
 end module gmres

@@ -134,27 +134,24 @@ contains
       real(dp), intent(in) :: by_heat(:)                       ! (heats) factors of them
       real(dp), intent(in) :: growth
       real(dp), intent(inout) :: by_motion(:), by_force(:)     ! (tail) likewise
-      real(dp) :: unit(size(self%slope), 1), per_force(size(by_heat), 1)
-      real(dp), dimension(size(by_heat), 1) :: per_shear, per_slip
+      real(dp) :: unit(size(self%slope), 3, 3)     ! of force, shear and slip, a column each
+      real(dp) :: per(size(by_heat), 3)
       integer :: k
 
-      unit = 1.0_dp
-      associate (friction => self%laws%friction, none => 0.0_dp*unit, system => &
-         bodies%equilibrium%contact)
-         per_force = friction%changes(bodies, self%contact, contact_change_type(none, unit, none, &
-            none, none), growth)
-         per_shear = friction%changes(bodies, self%contact, contact_change_type(none, none, unit, &
-            none, none), growth)
-         per_slip = friction%changes(bodies, self%contact, contact_change_type(none, none, none, &
-            unit, none), growth)
+      unit = 0.0_dp
+      do k = 1, 3
+         unit(:, k, k) = 1.0_dp
+      end do
+      per = self%laws%friction%changes(bodies, self%contact, contact_change_type( &
+         force=unit(:, :, 1), shear=unit(:, :, 2), slip=unit(:, :, 3)), growth)
+      associate (system => bodies%equilibrium%contact)
          do k = 1, size(by_heat)
             associate (j => bodies%points%heated(k))
-               by_force(system%normal(j)) = by_force(system%normal(j)) + by_heat(k)*per_force(k, 1)
+               by_force(system%normal(j)) = by_force(system%normal(j)) + by_heat(k)*per(k, 1)
                if (system%tangent(j) == 0) cycle
                by_force(system%tangent(j)) = by_force(system%tangent(j)) - by_heat(k)* &
-                  (per_shear(k, 1) + per_slip(k, 1)*system%compliance(j))
-               by_motion(system%tangent(j)) = by_motion(system%tangent(j)) + &
-                  by_heat(k)*per_slip(k, 1)
+                  (per(k, 2) + per(k, 3)*system%compliance(j))
+               by_motion(system%tangent(j)) = by_motion(system%tangent(j)) + by_heat(k)*per(k, 3)
             end associate
          end do
       end associate
