@@ -10,8 +10,8 @@ module deck_builder
    use deck_builder_contact, only: build_contacts, build_ties
    use deck_builder_axes, only: build_orientations, build_transforms
    use deck_builder_bars, only: build_bars
-   use deck_builder_equations, only: build_couplings, build_equations
-   use deck_builder_gap_heat, only: check_friction_heat
+   use deck_builder_equations, only: build_couplings, build_equations, build_pre_tensions
+   use deck_builder_gap_laws, only: check_friction_heat
    use deck_builder_histories, only: build_amplitudes, build_initial_stresses, build_temperatures, &
       build_time_points
    use deck_builder_interactions, only: build_interactions
@@ -19,7 +19,6 @@ module deck_builder
    use deck_builder_mesh, only: build_elements, build_nodes
    use deck_builder_node_surfaces, only: build_node_surfaces
    use deck_builder_options, only: build_load_axis, build_options, build_regions
-   use deck_builder_sections, only: build_pre_tensions
    use deck_builder_sets, only: build_sets, build_surfaces
    use deck_builder_steps, only: build_steps
    use deck_checks, only: check_model, check_usage

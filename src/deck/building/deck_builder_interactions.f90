@@ -7,8 +7,7 @@ module deck_builder_interactions
       table_jump, varies_with_temperature
    use contact_definitions, only: interaction_type
    use deck_builder_gap_conductance, only: build_gap_conductance, is_of_clearance
-   use deck_builder_gap_heat, only: build_friction_heat, build_gap_radiation
-   use deck_builder_gap_laws, only: build_gap_law
+   use deck_builder_gap_laws, only: build_friction_heat, build_gap_radiation, build_gap_law
    use deck_context, only: deck_type
    use deck_report, only: frictionless
    use deck_source, only: place_type

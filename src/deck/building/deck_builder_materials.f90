@@ -5,8 +5,7 @@ module deck_builder_materials
    use card_values, only: check_ascending, check_unneeded, read_row
    use cards, only: keyword_card_type
    use deck_builder_equations, only: find_reference
-   use deck_builder_inelastic, only: build_inelasticity, complete_law
-   use deck_builder_melting, only: build_melting
+   use deck_builder_material_laws, only: build_inelasticity, complete_law, build_melting
    use deck_context, only: deck_type
    use deck_source, only: place_type
    use deck_structure, only: cards_of, has_stand_in

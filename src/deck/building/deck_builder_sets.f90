@@ -3,9 +3,9 @@ module deck_builder_sets
    use card_parameters, only: choice, need_parameter, surface_kinds
    use card_values, only: check_extra, read_field, read_row
    use cards, only: data_card_type, keyword_card_type
-   use deck_builder_drawings, only: build_drawing, build_line_surface, is_rigid_side, lines_of
+   use deck_builder_rigid, only: build_drawing, build_line_surface, is_rigid_side, lines_of, &
+      need_faces
    use deck_builder_mesh, only: is_line_card
-   use deck_builder_rigid, only: need_faces
    use deck_context, only: deck_type, item_index_type, place_list_type
    use deck_structure, only: cards_of
    use element_kinds, only: element_corner_count, side_nodes

@@ -15,7 +15,7 @@ module deck_checks
    use mesh_checks, only: check_jacobians, check_planes, check_sides, check_slenderness
    use model, only: model_type
    use refinement, only: numbering_fault
-   use sliding_checks, only: check_sliding
+   use step_checks, only: check_sliding
    use steps, only: solves_heat, solves_mechanics
    use tail_choice, only: needs_full_tail
    use text, only: to_text, to_upper

@@ -8,9 +8,8 @@ module assembly_cards
    use cards, only: add_data, add_keyword, add_note, cards_type, data_card_type, field_type, &
       keyword_card_type, replace_cards
    use deck_report, only: deck_report_type
-   use given_cards, only: exact_text
+   use given_cards, only: exact_text, motion_type, read_motion
    use kinds, only: dp, long
-   use plane_motions, only: motion_type, read_motion
    use spelling, only: nearest_known
    use text, only: append, read_integer, read_real, string_type, to_text, to_upper
    implicit none

@@ -1,7 +1,7 @@
 !> One line after another -> cards: comments, continuations, parameters.
 module card_lines
    use card_fields, only: drop_empty_end, first_text, is_comment, is_keyword, last_text, &
-      split_fields, without_quotes
+      split_fields, without_quotes, fixed_columns_type, split_columns, take_format
    use card_parameters, only: take_parameter
    use card_typos, only: check_commas, lacks_star
    use cards, only: add_data, add_keyword, add_note, cards_type, field_type, keyword_card_type
@@ -9,7 +9,6 @@ module card_lines
    use deck_report, only: deck_report_type
    use deck_source, only: place_type
    use element_types, only: element_type_fields
-   use fixed_columns, only: fixed_columns_type, split_columns, take_format
    use keyword_cards, only: is_parameter, make_keyword_card
    use keywords, only: is_output
    use spelling, only: find_look_alike

@@ -1,6 +1,7 @@
 !> Nodes and elements of the cards so far, and the cards that are added to them where a card stands
-!> for others.
+!> for others; motions of nodes by a translation and a rotation, which stay in the plane.
 module given_cards
+   use card_values, only: read_row
    use cards, only: add_data, add_keyword, cards_type, data_card_type, field_type, &
       keyword_card_type, parameter_type
    use deck_report, only: deck_report_type
@@ -12,8 +13,9 @@ module given_cards
    use text, only: append, read_integer, read_real, string_type, to_text, to_upper
    implicit none
    private
-   public :: growing_cards_type, add_set, add_generated, add_numbers
-   public :: node_place, keep_last, members_of, card_of, is_given, corners_of, exact_text
+   public :: growing_cards_type, add_set, add_generated, add_numbers, node_place, keep_last, &
+      members_of, card_of, is_given, corners_of, exact_text, motion_type, read_motion, rotation, &
+      axis_layout
 
    !> Cards that take the place of others, so far.
    type, extends(cards_type) :: growing_cards_type
@@ -21,6 +23,21 @@ module given_cards
       type(number_list_type) :: nodes, elements
       type(deck_report_type), pointer :: report => null()         !! what is wrong with the deck
    end type growing_cards_type
+
+   !> Two points of an axis, as read_row.
+   character(*), parameter :: axis_layout = 'x of point 1?/y of point 1?/z of point 1?/'// &
+      'x of point 2?/y of point 2?/z of point 2? =1'
+
+   real(dp), parameter :: degree = acos(-1.0_dp)/180
+   real(dp), parameter :: negligible = 1.0e-9_dp   !! part of a direction or distance
+
+   !> What becomes of a place x: turn x + shift.
+   type :: motion_type
+      real(dp) :: turn(2, 2) = reshape([1.0_dp, 0.0_dp, 0.0_dp, 1.0_dp], [2, 2])
+      real(dp) :: shift(2) = 0.0_dp   !! [length]
+   contains
+      procedure :: moved
+   end type motion_type
 
 contains
 
@@ -224,5 +241,49 @@ contains
       write (buffer, '(es24.16e3)') value
       string = trim(adjustl(buffer))
    end function exact_text
+
+   !> A place behind the motion.
+   pure function moved(self, x)
+      class(motion_type), intent(in) :: self
+      real(dp), intent(in) :: x(2)                       !! [length]
+      real(dp) :: moved(2)                               !! [length]
+
+      moved = matmul(self%turn, x) + self%shift
+   end function moved
+
+   !> Reads a translation and, on a second card, axis and angle of the rotation that follows it.
+   subroutine read_motion(rows, times, report, motion)
+      type(data_card_type), intent(in) :: rows(:)
+      integer, intent(in) :: times                       !! the angle counts as often
+      class(deck_report_type), intent(inout) :: report   !! receives errors
+      type(motion_type), intent(out) :: motion           !! receives what is sound of it
+      real(dp) :: x(7)
+      logical :: valid
+
+      if (size(rows) == 0) return
+      call read_row(rows(1), 'translation along x?/translation along y?/translation along z?', &
+         report, x(:3), valid)
+      motion%shift = x(:2)
+      if (abs(x(3)) > negligible*maxval(abs(x(:3)))) call report%error(rows(1)%place(3), &
+         'models stay in the plane: the translation along z must be 0')
+      if (size(rows) == 1) return
+      call read_row(rows(2), axis_layout//'/angle in degrees?', report, x, valid)
+      if (.not. valid) return
+      associate (axis => x(4:6) - x(:3))
+         if (norm2(axis(:2)) > negligible*norm2(axis) .or. norm2(axis) <= 0.0_dp) call &
+            report%error(rows(2)%place(1), 'models stay in the plane: the axis of the rotation '// &
+            'is along z, such as 0., 0., 0., 0., 0., 1., 90.')
+         motion%turn = rotation(sign(times*degree, axis(3))*x(7))
+      end associate
+      motion%shift = x(:2) + matmul(motion%turn, motion%shift - x(:2))
+   end subroutine read_motion
+
+   !> Turns a place about the origin.
+   pure function rotation(angle)
+      real(dp), intent(in) :: angle                      !! anticlockwise [rad]
+      real(dp) :: rotation(2, 2)
+
+      rotation = reshape([cos(angle), sin(angle), -sin(angle), cos(angle)], [2, 2])
+   end function rotation
 
 end module given_cards
