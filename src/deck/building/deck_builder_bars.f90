@@ -177,7 +177,6 @@ contains
       end do
    end function is_plain
 
-   !> Young's modulus of an isotropic elasticity.
    pure real(dp) function youngs_modulus(elasticity) result(modulus)
       real(dp), intent(in) :: elasticity(4, 4)         !! [stress]
 

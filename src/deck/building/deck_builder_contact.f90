@@ -165,7 +165,6 @@ contains
          'surface '//to_upper(slave)//' and the master surface '//to_upper(master), 'surface')
    end subroutine find_contacts
 
-   !> Reads what all data cards of a card have in common.
    subroutine read_parameters(card, deck, contact)
       type(keyword_card_type), intent(in) :: card
       type(deck_type), intent(inout) :: deck
@@ -332,7 +331,6 @@ contains
       deck%model%steps(step)%changes = changes
    end subroutine build_contact_change
 
-   !> The interferences of some interfaces.
    subroutine change_interferences(card, step, deck, changes)
       type(keyword_card_type), intent(in) :: card
       integer, intent(in) :: step

@@ -357,7 +357,6 @@ contains
       if (len(fault) > 0) call deck%error(card%place, 'this section '//fault)
    end subroutine build_section
 
-   !> Cuts the mesh, and adds the other face.
    subroutine cut(card, deck, section, fault)
       type(keyword_card_type), intent(in) :: card
       type(deck_type), intent(inout) :: deck

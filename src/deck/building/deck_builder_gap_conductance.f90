@@ -211,7 +211,6 @@ contains
          'temperature, the same in every row, is ignored')
    end subroutine check_temperatures
 
-   !> Each of some values once.
    pure function ascending(values) result(sorted)
       real(dp), intent(in) :: values(:)
       real(dp), allocatable :: sorted(:)

@@ -140,7 +140,6 @@ contains
          interaction%law)
    end subroutine build_laws
 
-   !> Reads one *WEAR: K, share of the slave, temperature.
    subroutine build_wear(card, deck, wear)
       type(keyword_card_type), intent(in) :: card
       type(deck_type), intent(inout) :: deck

@@ -135,7 +135,6 @@ contains
       yield%strain = values(2, :)
    end subroutine read_table
 
-   !> Reads yield stress, C and gamma, over temperature.
    subroutine read_parameters(card, deck, material)
       type(keyword_card_type), intent(in) :: card
       type(deck_type), intent(inout) :: deck

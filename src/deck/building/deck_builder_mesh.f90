@@ -79,7 +79,6 @@ contains
       end do
    end subroutine build_nodes
 
-   !> Adds a node of a card, in the place of the first one.
    subroutine add_unnamed(card, deck)
       type(keyword_card_type), intent(in) :: card
       type(deck_type), intent(inout) :: deck
@@ -252,7 +251,6 @@ contains
       call deck%member_index%build(numbers)
    end subroutine build_elements
 
-   !> Adds the lines of a card.
    subroutine add_lines(card, deck, n)
       type(keyword_card_type), intent(in) :: card
       type(deck_type), intent(inout) :: deck

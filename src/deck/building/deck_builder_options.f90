@@ -70,7 +70,6 @@ contains
       end do
    end subroutine build_options
 
-   !> Reads *SOLVER.
    subroutine build_solver(card, deck)
       type(keyword_card_type), intent(in) :: card
       type(deck_type), intent(inout) :: deck

@@ -206,7 +206,6 @@ contains
       call join_lines(card, lines, ends, deck, surface)
    end subroutine build_line_surface
 
-   !> Puts lines one behind the other.
    subroutine join_lines(card, lines, ends, deck, surface)
       type(keyword_card_type), intent(in) :: card
       integer, intent(in) :: lines(:), ends(:, :)          ! (n), (2, n) nodes

@@ -135,7 +135,6 @@ contains
       draft%items(set)%name = name
    end subroutine open_set
 
-   !> Reads one *NSET or *ELSET card.
    subroutine build_set(card, deck, draft)
       type(keyword_card_type), intent(in) :: card
       type(deck_type), intent(inout) :: deck
@@ -436,7 +435,6 @@ contains
       end do
    end subroutine check_face
 
-   !> Reads the second field of a card as S and the number of a face.
    subroutine read_face(data, deck, face, valid)
       type(data_card_type), intent(in) :: data
       type(deck_type), intent(inout) :: deck

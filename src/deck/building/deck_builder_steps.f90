@@ -295,7 +295,6 @@ contains
          'ramps them')
    end subroutine build_analysis
 
-   !> Whether an analysis gives its largest increment.
    pure logical function has_largest(card)
       type(keyword_card_type), intent(in) :: card
 
@@ -361,7 +360,6 @@ contains
       end if
    end subroutine fit_increments
 
-   !> Whether a step would take more increments than INC= allows.
    pure logical function too_many(step)
       type(step_type), intent(in) :: step
 

@@ -105,7 +105,6 @@ contains
       end associate
    end subroutine check_references
 
-   !> Every material in use has what the steps need.
    subroutine check_materials(deck)
       type(deck_type), intent(inout) :: deck
       logical :: mechanics, heat

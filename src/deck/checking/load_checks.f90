@@ -130,7 +130,6 @@ contains
          load_film_coefficient])
    end function is_heat
 
-   !> Every material of the loaded elements has a density.
    subroutine check_density(request, label, deck)
       type(request_type), intent(in) :: request
       character(*), intent(in) :: label

@@ -111,7 +111,6 @@ contains
       call check_faces(deck, uses)
    end subroutine check_sides
 
-   !> Checks the elements that meet between two corners.
    subroutine check_meeting(deck, sides, uses)
       type(deck_type), intent(inout) :: deck
       type(element_side_type), intent(in) :: sides(:)
@@ -241,7 +240,6 @@ contains
          others(count(clockwise), '; such elements: '))
    end subroutine check_jacobians
 
-   !> Message on an element that is inverted somewhere.
    pure function inversion(mesh, e, where) result(message)
       type(mesh_type), intent(in) :: mesh
       integer, intent(in) :: e

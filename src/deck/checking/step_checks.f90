@@ -75,7 +75,6 @@ contains
       end do
    end function obstacle_of_analysis
 
-   !> Why the loads of a step are not proportional to the load factor.
    function obstacle_of_loads(model, n) result(words)
       type(model_type), intent(in) :: model
       integer, intent(in) :: n                  ! number of the step
@@ -121,7 +120,6 @@ contains
       end subroutine look_at
    end function obstacle_of_loads
 
-   !> Why the first increment is no point to begin at.
    pure function obstacle_of_start(step) result(words)
       type(step_type), intent(in) :: step
       character(:), allocatable :: words
@@ -349,7 +347,6 @@ contains
       end do
    end function what_is_beside
 
-   !> The faces of both surfaces.
    pure function faces_of(mesh, definition) result(faces)
       type(mesh_type), intent(in) :: mesh
       type(contact_definition_type), intent(in) :: definition
@@ -361,7 +358,6 @@ contains
       end associate
    end function faces_of
 
-   !> Whether a side of an element belongs to the faces of two definitions.
    pure logical function share_a_face(mesh, one, other)
       type(mesh_type), intent(in) :: mesh
       type(contact_definition_type), intent(in) :: one, other

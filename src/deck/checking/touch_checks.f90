@@ -211,7 +211,6 @@ contains
       end function is_paired
    end subroutine drop_related
 
-   !> Warns of the touches of one key.
    subroutine warn(deck, sides, touches, key)
       type(deck_type), intent(inout) :: deck
       type(element_sides_type), intent(in) :: sides

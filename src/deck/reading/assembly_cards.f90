@@ -117,7 +117,6 @@ contains
       step = 0
    end subroutine find_step
 
-   !> Largest number that a data card gives.
    integer(long) function largest_number(keyword, data)
       character(*), intent(in) :: keyword
       type(data_card_type), intent(in) :: data
@@ -220,7 +219,6 @@ contains
       end do
    end subroutine open_instances
 
-   !> Begins an instance with the cards of its part.
    subroutine open_instance(cards, card, instance, open, all, report)
       type(cards_type), intent(in) :: cards
       type(keyword_card_type), intent(in) :: card
@@ -345,7 +343,6 @@ contains
       end if
    end subroutine prefix
 
-   !> Numbers, names and coordinates of one data card.
    subroutine convert(card, data, position, instance, fields)
       type(keyword_card_type), intent(in) :: card
       type(data_card_type), intent(in) :: data

@@ -36,7 +36,6 @@ contains
       call print_line(unit, repeat(' ', character_count(before))//'^')
    end subroutine print_card
 
-   !> Part of a card as it is printed.
    pure function shown(part) result(string)
       character(*), intent(in) :: part
       character(:), allocatable :: string

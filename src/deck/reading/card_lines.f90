@@ -109,7 +109,6 @@ contains
       call report%possible_cause(place_type(image, position), 'this character is '//words)
    end subroutine suspect_look_alike
 
-   !> Number of fields that are not empty.
    pure integer function filled(fields)
       type(field_type), intent(in) :: fields(:)
       integer :: i
@@ -307,7 +306,6 @@ contains
          before + filled(fields) == self%element_fields
    end function continues_element
 
-   !> A complete data card.
    subroutine take_data(self, fields, image, cards, report)
       type(card_lines_type), intent(inout) :: self
       type(field_type), allocatable, intent(inout) :: fields(:)

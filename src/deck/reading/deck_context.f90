@@ -266,7 +266,6 @@ contains
       indexes = pack([(i, i=1, count)], .not. is_used)
    end function unused
 
-   !> Reports a name that no item has.
    subroutine report_unknown(self, noun, name, place, most)
       class(deck_type), intent(inout) :: self           !! receives the error
       character(*), intent(in) :: noun, name

@@ -95,7 +95,6 @@ contains
       names = open_lines%parameters%known()
    end subroutine parameters_of_deck
 
-   !> Reads all lines of a deck into cards as they are written.
    subroutine read_all_lines(path, settings, open_lines, cards, report, fault)
       character(*), intent(in) :: path
       type(string_type), intent(in) :: settings(:)

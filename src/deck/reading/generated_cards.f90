@@ -144,7 +144,6 @@ contains
       end do
    end subroutine generate_nodes
 
-   !> A node of the cards so far, and its place.
    subroutine find_given_node(data, i, number, all, node)
       type(data_card_type), intent(in) :: data
       integer, intent(in) :: i                ! position of the field
@@ -344,7 +343,6 @@ contains
       end associate
    end subroutine copy_nodes
 
-   !> What a copy does to a place.
    subroutine read_copy(card, all, motion)
       type(keyword_card_type), intent(in) :: card
       type(growing_cards_type), intent(in) :: all
@@ -434,7 +432,6 @@ contains
          ' a node or element')
    end subroutine take_old_set
 
-   !> What the numbers of the copies have above those of the set.
    subroutine need_shift(card, name, all, shift)
       type(keyword_card_type), intent(in) :: card
       character(*), intent(in) :: name                  ! of the parameter

@@ -183,7 +183,6 @@ contains
       end do
    end subroutine add_members
 
-   !> Adds a name that is not there yet.
    subroutine add_name(name, known, names)
       character(*), intent(in) :: name
       type(name_index_type), intent(inout) :: known
