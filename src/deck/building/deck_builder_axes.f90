@@ -2,7 +2,7 @@
 module deck_builder_axes
    use card_parameters, only: choice
    use card_values, only: read_row
-   use cards, only: data_card_type, keyword_card_type
+   use cards, only: data_card_type
    use deck_context, only: deck_type
    use deck_structure, only: cards_of
    use kinds, only: dp
@@ -27,13 +27,14 @@ contains
       places = cards_of(deck%cards, 'TRANSFORM')
       allocate (deck%model%transforms(size(places)))
       do n = 1, size(places)
-         associate (card => deck%cards%keywords(places(n)), transform => deck%model%transforms(n))
-            transform%title = '*TRANSFORM, '//deck%source%words_of(card%place)
-            transform%card = card%place%image
-            call deck%need_named(card, 'NSET', 'node set', transform%set)
-            transform%cylindrical = choice(card, 'TYPE', 'R/C', deck, 'R') == 'C'
-            if (size(card%data) > 0) call read_axes(card%data(1), deck, transform)
-            call check_nodes(card, n, deck)
+         call deck%open_card(places(n))
+         associate (transform => deck%model%transforms(n))
+            transform%title = '*TRANSFORM, '//deck%source%words_of(deck%card%place)
+            transform%card = deck%card%place%image
+            call deck%need_named('NSET', 'node set', transform%set)
+            transform%cylindrical = choice(deck%card, 'TYPE', 'R/C', deck, 'R') == 'C'
+            if (size(deck%card%data) > 0) call read_axes(deck%card%data(1), deck, transform)
+            call check_nodes(n, deck)
          end associate
       end do
    end subroutine build_transforms
@@ -50,25 +51,25 @@ contains
       places = cards_of(deck%cards, 'ORIENTATION')
       allocate (deck%model%orientations(size(places)))
       do n = 1, size(places)
-         call deck%take_name(places(n), 'orientation', deck%model%orientations(n)%name)
-         associate (card => deck%cards%keywords(places(n)), given_axes => &
-            deck%model%orientations(n))
-            if (size(card%data) == 0) cycle
+         call deck%open_card(places(n))
+         call deck%take_name('orientation', deck%model%orientations(n)%name)
+         associate (given_axes => deck%model%orientations(n))
+            if (size(deck%card%data) == 0) cycle
             axes = transform_type()
-            axes%cylindrical = choice(card, 'SYSTEM', 'RECTANGULAR/CYLINDRICAL', deck, &
+            axes%cylindrical = choice(deck%card, 'SYSTEM', 'RECTANGULAR/CYLINDRICAL', deck, &
                'RECTANGULAR') == 'CYLINDRICAL'
-            call read_axes(card%data(1), deck, axes)
-            if (axes%out_of_plane /= 3) call deck%error(card%data(1)%place(1), 'axes 1 and 2 '// &
-               'of an orientation lie in the plane: the z components of a and b must be 0')
+            call read_axes(deck%card%data(1), deck, axes)
+            if (axes%out_of_plane /= 3) call deck%error(deck%card%data(1)%place(1), 'axes 1 '// &
+               'and 2 of an orientation lie in the plane: the z components of a and b must be 0')
             given_axes%cylindrical = axes%cylindrical
             given_axes%orientation_sign = axes%sense
             if (axes%cylindrical) given_axes%centre = axes%point
             if (.not. axes%cylindrical) given_axes%direction = axes%point
-            if (size(card%data) == 1) cycle
+            if (size(deck%card%data) == 1) cycle
             ! A turn round axis 3, from axis 1 towards axis 2.
-            call read_row(card%data(2), '#axis/angle in degrees?', deck, given, valid)
-            if (valid .and. nint(given(1)) /= 3) call deck%error(card%data(2)%place(1), 'a '// &
-               'turn about axis 1 or 2 leaves the plane: only axis 3')
+            call read_row(deck%card%data(2), '#axis/angle in degrees?', deck, given, valid)
+            if (valid .and. nint(given(1)) /= 3) call deck%error(deck%card%data(2)%place(1), &
+               'a turn about axis 1 or 2 leaves the plane: only axis 3')
             associate (first => given_axes%direction, angle => given(2)*degree)
                first = cos(angle)*first + sin(angle)*axes%sense*[-first(2), first(1)]
             end associate
@@ -131,8 +132,7 @@ contains
    end subroutine set_axes
 
    !> A node has one transform, and is not on the axis of it.
-   subroutine check_nodes(card, n, deck)
-      type(keyword_card_type), intent(in) :: card
+   subroutine check_nodes(n, deck)
       integer, intent(in) :: n
       type(deck_type), intent(inout) :: deck
       integer :: i, k
@@ -145,15 +145,15 @@ contains
                if (deck%model%transforms(k)%set == 0) cycle
                if (all(deck%mesh%node_sets(deck%model%transforms(k)%set)%members /= &
                   members(i))) cycle
-               call deck%error(card%place_of('NSET'), 'node '//to_text(number(members(i)))//' '// &
-                  'has axes of its own by '//deck%model%transforms(k)%title//' already')
+               call deck%error(deck%card%place_of('NSET'), 'node '//to_text(number(members(i)))// &
+                  ' has axes of its own by '//deck%model%transforms(k)%title//' already')
                return
             end do
             if (.not. deck%model%transforms(n)%cylindrical) cycle
             if (norm2(x(:, members(i)) - deck%model%transforms(n)%point) > &
                negligible*extent_of(x)) cycle
-            call deck%error(card%place_of('NSET'), 'node '//to_text(number(members(i)))//' is '// &
-               'on the axis, where no direction is radial')
+            call deck%error(deck%card%place_of('NSET'), 'node '//to_text(number(members(i)))// &
+               ' is on the axis, where no direction is radial')
             return
          end do
       end associate

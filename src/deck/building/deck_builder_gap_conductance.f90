@@ -18,8 +18,7 @@ contains
    !> Reads one *GAP CONDUCTANCE. With CLEARANCE it has the meaning that it has in Abaqus: beyond
    !> the last row no heat crosses. Without, it is for CalculiX, which knows no *GAP LAW, where one
    !> gives the closed side.
-   subroutine build_gap_conductance(card, name, is_open, deck, law)
-      type(keyword_card_type), intent(in) :: card
+   subroutine build_gap_conductance(name, is_open, deck, law)
       character(*), intent(in) :: name                     !! name of the surface interaction
       logical, intent(in) :: is_open                       !! whether it is over the clearance
       type(deck_type), intent(inout) :: deck
@@ -32,13 +31,13 @@ contains
       title = '*GAP CONDUCTANCE'
       if (is_open) then
          title = '*GAP CONDUCTANCE, CLEARANCE'
-         if (card%has('PRESSURE')) call deck%error(card%place_of('CLEARANCE'), 'PRESSURE and '// &
-            'CLEARANCE exclude each other: both name the second column')
-         if (law%open_kind /= law_none) call deck%error(card%place, 'a second open law in one '// &
-            'surface interaction')
+         if (deck%card%has('PRESSURE')) call deck%error(deck%card%place_of('CLEARANCE'), &
+            'PRESSURE and CLEARANCE exclude each other: both name the second column')
+         if (law%open_kind /= law_none) call deck%error(deck%card%place, 'a second open law in '// &
+            'one surface interaction')
       end if
-      call read_table(card, trim(merge('gap     ', 'pressure', is_open)), deck, table)
-      if (deck%error_count() == errors) call check_columns(card, name, is_open, table, deck)
+      call read_table(trim(merge('gap     ', 'pressure', is_open)), deck, table)
+      if (deck%error_count() == errors) call check_columns(name, is_open, table, deck)
       if (allocated(table%temperature)) call note_ends(title, name, 'mean temperatures', &
          table%temperature, deck)
       if (.not. is_open) then
@@ -90,8 +89,7 @@ contains
 
    !> Warns of a table that conducts nothing, and of one without a parameter that is taken as one of
    !> clearance, or that may be meant so.
-   subroutine check_columns(card, name, is_open, table, deck)
-      type(keyword_card_type), intent(in) :: card
+   subroutine check_columns(name, is_open, table, deck)
       character(*), intent(in) :: name
       logical, intent(in) :: is_open
       type(conductance_table_type), intent(in) :: table
@@ -99,14 +97,14 @@ contains
       character(:), allocatable :: words
       integer :: n
 
-      if (all(table%columns <= 0.0_dp)) call deck%warning(card%place, 'all conductances of '// &
-         'this table of '//name//' are 0: it conducts no heat; the first column of *GAP '// &
+      if (all(table%columns <= 0.0_dp)) call deck%warning(deck%card%place, 'all conductances '// &
+         'of this table of '//name//' are 0: it conducts no heat; the first column of *GAP '// &
          'CONDUCTANCE is the conductance')
-      if (is_open .and. .not. card%has('CLEARANCE')) call deck%warning(card%place, 'the second '// &
-         'column of this table of '//name//' is taken as the clearance, as in Abaqus; in '// &
-         'CalculiX it is the pressure: write *GAP CONDUCTANCE, CLEARANCE, or PRESSURE if that '// &
-         'is meant')
-      if (is_open .or. card%has('PRESSURE') .or. all(table%columns <= 0.0_dp)) return
+      if (is_open .and. .not. deck%card%has('CLEARANCE')) call deck%warning(deck%card%place, &
+         'the second column of this table of '//name//' is taken as the clearance, as in '// &
+         'Abaqus; in CalculiX it is the pressure: write *GAP CONDUCTANCE, CLEARANCE, or '// &
+         'PRESSURE if that is meant')
+      if (is_open .or. deck%card%has('PRESSURE') .or. all(table%columns <= 0.0_dp)) return
       n = size(table%abscissa)
       associate (before => table%columns(:n - 1, :), behind => table%columns(2:, :))
          if (any(behind < before)) then
@@ -117,37 +115,36 @@ contains
             words = ' is the same in all rows'
          end if
       end associate
-      call deck%warning(card%place, 'the conductance of '//name//words//'; its second column '// &
-         'is taken as the pressure, as in CalculiX; in Abaqus it is the clearance: write *GAP '// &
-         'CONDUCTANCE, PRESSURE, or CLEARANCE if that is meant')
+      call deck%warning(deck%card%place, 'the conductance of '//name//words//'; its second '// &
+         'column is taken as the pressure, as in CalculiX; in Abaqus it is the clearance: '// &
+         'write *GAP CONDUCTANCE, PRESSURE, or CLEARANCE if that is meant')
    end subroutine check_columns
 
    !> Rows of conductance and what it belongs to. Those of a table with temperatures have one behind
    !> it and are in groups of one temperature.
-   subroutine read_table(card, noun, deck, table)
-      type(keyword_card_type), intent(in) :: card
+   subroutine read_table(noun, deck, table)
       character(*), intent(in) :: noun                     !! what it belongs to, gap or pressure
       type(deck_type), intent(inout) :: deck
       type(conductance_table_type), intent(out) :: table
       character(:), allocatable :: layout
       real(dp), allocatable :: grid(:)
-      real(dp) :: values(3, size(card%data))
+      real(dp) :: values(3, size(deck%card%data))
       integer :: i, k
       logical :: valid
 
       layout = 'conductance >=0/'//noun//' >=0'
-      if (card%name == 'GAP CONDUCTANCE') layout = layout//'/temperature?'
-      call read_rows(card%data, layout, deck, values, valid)
+      if (deck%card%name == 'GAP CONDUCTANCE') layout = layout//'/temperature?'
+      call read_rows(deck%card%data, layout, deck, values, valid)
       table%omega = values(1, :)
       table%abscissa = values(2, :)
       associate (temperature => values(3, :))
-         call check_temperatures(card%data, temperature, deck, valid)
+         call check_temperatures(deck%card%data, temperature, deck, valid)
          do i = 2, size(temperature)
             ! A gap that is not known is 0.
             if (abs(temperature(i) - temperature(i - 1)) > 0.0_dp .or. .not. (valid .or. &
                table%abscissa(i) > 0.0_dp)) cycle
-            if (table%abscissa(i) <= table%abscissa(i - 1)) call deck%error( &
-               card%data(i)%place(2), noun//'s must ascend')
+            if (table%abscissa(i) <= table%abscissa(i - 1)) call deck%error(deck%card%data( &
+               i)%place(2), noun//'s must ascend')
          end do
          if (all(temperature <= temperature(1)) .or. .not. valid) then
             table%columns = reshape(table%omega, [size(table%omega), 1])
@@ -156,10 +153,10 @@ contains
          do i = 1, size(temperature)
             ! Between temperatures at which it ends at other gaps, a table would end at none.
             if (noun /= 'gap' .or. any(temperature(i + 1:) <= temperature(i))) cycle
-            if (abs(table%abscissa(i) - maxval(table%abscissa, mask=temperature <= &
-               temperature(1))) > 0.0_dp) call deck%error(card%data(i)%place(2), 'the table '// &
-               'ends at a different gap than at the first temperature; no heat crosses beyond '// &
-               'the end, which must be the same at all temperatures')
+            if (abs(table%abscissa(i) - maxval(table%abscissa, mask=temperature <= temperature( &
+               1))) > 0.0_dp) call deck%error(deck%card%data(i)%place(2), 'the table ends at a '// &
+               'different gap than at the first temperature; no heat crosses beyond the end, '// &
+               'which must be the same at all temperatures')
          end do
          ! One column for each temperature, with the conductance at all gaps or pressures.
          grid = ascending(table%abscissa)

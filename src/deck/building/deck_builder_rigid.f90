@@ -3,7 +3,7 @@
 module deck_builder_rigid
    use card_parameters, only: choice, is_on
    use card_values, only: check_extra, read_field, read_row
-   use cards, only: data_card_type, keyword_card_type
+   use cards, only: data_card_type
    use deck_context, only: deck_type
    use deck_source, only: place_type
    use drawn_lines, only: drawn_line_type, sharpest_corner
@@ -27,8 +27,7 @@ contains
 
    !> Reads the cards START, LINE and CIRCL of a surface: the end of a piece and, of an arc, its
    !> centre.
-   subroutine build_drawing(card, deck, surface)
-      type(keyword_card_type), intent(in) :: card
+   subroutine build_drawing(deck, surface)
       type(deck_type), intent(inout) :: deck
       type(surface_type), intent(inout) :: surface         !! receives the drawing
       type(drawn_line_type) :: line
@@ -39,8 +38,8 @@ contains
 
       errors = deck%error_count()
       allocate (line%start(2, 0), line%finish(2, 0), line%centre(2, 0), line%is_arc(0))
-      do j = 1, size(card%data)
-         associate (data => card%data(j))
+      do j = 1, size(deck%card%data)
+         associate (data => deck%card%data(j))
             word = to_upper(data%text(1))
             if ((word == 'START') .neqv. (j == 1)) then
                call deck%error(data%place(1), 'a drawing begins with one card START, x, y; the '// &
@@ -71,14 +70,15 @@ contains
             last = x(:, 1)
          end associate
       end do
-      if (deck%error_count() == errors .and. size(line%is_arc) == 0) call deck%error(card%place, &
-         'the drawing has no piece: give LINE or CIRCL behind START')
+      if (deck%error_count() == errors .and. size(line%is_arc) == 0) call deck%error( &
+         deck%card%place, 'the drawing has no piece: give LINE or CIRCL behind START')
       if (deck%error_count() > errors) return
       associate (n => size(line%is_arc))
          line%closed = n > 1 .and. norm2(line%finish(:, n) - line%start(:, 1)) <= &
             same_point*maxval(norm2(line%finish - line%start, dim=1))
       end associate
-      call check_smooth([(card%data(j)%place(1), j=2, size(card%data))], surface%name, line, deck)
+      call check_smooth([(deck%card%data(j)%place(1), j=2, size(deck%card%data))], surface%name, &
+         line, deck)
       call turn_round(line)
       surface%drawing = line
    end subroutine build_drawing
@@ -174,8 +174,7 @@ contains
 
    !> Builds the surface of the sides of rigid line elements: SPOS is on the left from the first to
    !> the second node, SNEG on the right.
-   subroutine build_line_surface(card, deck, surface)
-      type(keyword_card_type), intent(in) :: card
+   subroutine build_line_surface(deck, surface)
       type(deck_type), intent(inout) :: deck
       type(surface_type), intent(inout) :: surface         !! receives the line
       integer, allocatable :: ends(:, :), lines(:), more(:)
@@ -184,16 +183,16 @@ contains
       logical :: valid
 
       allocate (lines(0), ends(2, 0))
-      do j = 1, size(card%data)
+      do j = 1, size(deck%card%data)
          valid = .true.
-         call read_field(card%data(j), 2, 'side SPOS or SNEG', deck, side, valid)
-         call check_extra(card%data(j), 2, 'element or set, side', deck)
+         call read_field(deck%card%data(j), 2, 'side SPOS or SNEG', deck, side, valid)
+         call check_extra(deck%card%data(j), 2, 'element or set, side', deck)
          if (.not. valid) return
          side = to_upper(side)
-         more = lines_of(card%data(j)%text(1), deck)
+         more = lines_of(deck%card%data(j)%text(1), deck)
          if ((side /= 'SPOS' .and. side /= 'SNEG') .or. size(more) == 0) then
-            call deck%error(card%data(j)%place(merge(1, 2, size(more) == 0)), 'a surface of '// &
-               'rigid elements has sides SPOS or SNEG of such elements only')
+            call deck%error(deck%card%data(j)%place(merge(1, 2, size(more) == 0)), 'a surface '// &
+               'of rigid elements has sides SPOS or SNEG of such elements only')
             return
          end if
          if (any(deck%line_nodes(:2, more) == 0)) return
@@ -203,11 +202,10 @@ contains
                deck%line_nodes([2, 1], more(i)), side == 'SPOS')], [2, size(ends, 2) + 1])
          end do
       end do
-      call join_lines(card, lines, ends, deck, surface)
+      call join_lines(lines, ends, deck, surface)
    end subroutine build_line_surface
 
-   subroutine join_lines(card, lines, ends, deck, surface)
-      type(keyword_card_type), intent(in) :: card
+   subroutine join_lines(lines, ends, deck, surface)
       integer, intent(in) :: lines(:), ends(:, :)          ! (n), (2, n) nodes
       type(deck_type), intent(inout) :: deck
       type(surface_type), intent(inout) :: surface
@@ -223,9 +221,9 @@ contains
          if (order(i) > 0) then
             if (all(order(:i - 1) /= order(i))) cycle
          end if
-         call deck%error(card%place, 'the rigid elements of surface '//surface%name//' are not '// &
-            'one line, each from the node where another one ends; number their nodes that way, '// &
-            'or name the pieces as surfaces of their own')
+         call deck%error(deck%card%place, 'the rigid elements of surface '//surface%name// &
+            ' are not one line, each from the node where another one ends; number their nodes '// &
+            'that way, or name the pieces as surfaces of their own')
          return
       end do
       line%line = lines(order)
@@ -234,15 +232,14 @@ contains
       allocate (line%is_arc(size(lines)), source=.false.)
       line%centre = 0.0_dp*line%start
       line%closed = ends(1, order(1)) == ends(2, order(size(order)))
-      call check_smooth([(card%place, i=1, size(lines))], surface%name, line, deck)
+      call check_smooth([(deck%card%place, i=1, size(lines))], surface%name, line, deck)
       call turn_round(line)
       surface%drawing = line
    end subroutine join_lines
 
    !> Reads what follows the reference node, which is known: sets of nodes and elements, and the
    !> surfaces that are lines.
-   subroutine build_rigid_body(card, deck, coupling)
-      type(keyword_card_type), intent(in) :: card
+   subroutine build_rigid_body(deck, coupling)
       type(deck_type), intent(inout) :: deck
       type(coupling_type), intent(inout) :: coupling       !! receives the rest
       character(*), parameter :: names(3) = [character(8) :: 'NSET', 'TIE NSET', 'PIN NSET']
@@ -256,26 +253,26 @@ contains
       allocate (coupling%node_sets(0), lines(0))
       do i = 1, size(names)
          set = 0
-         call deck%take_named(card, trim(names(i)), 'node set', set)
+         call deck%take_named(trim(names(i)), 'node set', set)
          if (set > 0) coupling%node_sets = [coupling%node_sets, set]
       end do
-      call deck%take_named(card, 'ELSET', 'element set', coupling%element_set)
+      call deck%take_named('ELSET', 'element set', coupling%element_set)
       if (coupling%element_set > 0) then
          lines = lines_of(deck%mesh%element_sets(coupling%element_set)%name, deck)
          coupling%nodes = pack(deck%line_nodes(:, lines), deck%line_nodes(:, lines) > 0)
       end if
       surface = 0
-      call deck%take_named(card, 'ANALYTICAL SURFACE', 'surface', surface)
+      call deck%take_named('ANALYTICAL SURFACE', 'surface', surface)
       if (surface > 0) then
          if (.not. allocated(deck%mesh%surfaces(surface)%drawing)) then
-            call deck%error(card%place_of('ANALYTICAL SURFACE'), 'surface '// &
+            call deck%error(deck%card%place_of('ANALYTICAL SURFACE'), 'surface '// &
                deck%mesh%surfaces(surface)%name//' is no drawing; name one of *SURFACE, '// &
                'TYPE=SEGMENTS, or the elements by ELSET=')
             return
          end if
       end if
-      position = choice(card, 'POSITION', 'INPUT', deck, '')
-      isothermal = is_on(card, 'ISOTHERMAL', deck)
+      position = choice(deck%card, 'POSITION', 'INPUT', deck, '')
+      isothermal = is_on(deck%card, 'ISOTHERMAL', deck)
       ! Lines conduct no heat: they have one temperature.
       coupling%is_warm = isothermal .or. (size(lines) > 0 .and. size(coupling%node_sets) == 0)
       do i = 1, size(deck%mesh%surfaces)
@@ -289,9 +286,9 @@ contains
             given%drawing%rotation = coupling%rotation
          end associate
       end do
-      if (.not. (card%has('ELSET') .or. card%has('ANALYTICAL SURFACE') .or. any([(card%has( &
-         trim(names(i))), i=1, size(names))]))) call deck%error(card%place, '*RIGID BODY names '// &
-         'nothing that is rigid; give ELSET=, NSET= or ANALYTICAL SURFACE=')
+      if (.not. (deck%card%has('ELSET') .or. deck%card%has('ANALYTICAL SURFACE') .or. any([( &
+         deck%card%has(trim(names(i))), i=1, size(names))]))) call deck%error(deck%card%place, &
+         '*RIGID BODY names nothing that is rigid; give ELSET=, NSET= or ANALYTICAL SURFACE=')
    end subroutine build_rigid_body
 
    !> Refuses a rigid surface where faces of elements are needed.

@@ -1,6 +1,5 @@
 !> Constants in other units than *OPTIONS, UNITS= says.
 module unit_checks
-   use cards, only: keyword_card_type
    use deck_context, only: deck_type
    use heat_checks, only: temperature_range
    use kinds, only: dp
@@ -67,30 +66,30 @@ contains
       pascal = size_of(to_upper(deck%model%units%stress), stresses)
       m = 0
       do k = 1, size(deck%cards%keywords)
-         select case (deck%cards%keywords(k)%name)
+         call deck%open_card(k)
+         select case (deck%card%name)
          case ('PHYSICAL CONSTANTS')
-            call check_zero(deck%cards%keywords(k), deck)
-            if (min(degree, metre, watt) <= 0.0_dp .or. &
-               .not. deck%cards%keywords(k)%has('STEFAN BOLTZMANN')) cycle
+            call check_zero(deck)
+            if (min(degree, metre, watt) <= 0.0_dp .or. .not. deck%card%has( &
+               'STEFAN BOLTZMANN')) cycle
             constant = stefan_boltzmann*metre**2*degree**4/watt
             associate (given => deck%model%constants%stefan_boltzmann, units => deck%model%units)
                if (abs(given - constant) <= other_digits*constant) cycle
-               call deck%warning(deck%cards%keywords(k)%place_of('STEFAN BOLTZMANN'), 'the '// &
-                  'constant of Stefan and Boltzmann is '//to_text(given)//', but '// &
-                  to_text(constant)//' in the units of *OPTIONS, UNITS=, '//units%power//'/('// &
-                  units%length//'^2 '//units%temperature//'^4); give that, or correct UNITS=')
+               call deck%warning(deck%card%place_of('STEFAN BOLTZMANN'), 'the constant of '// &
+                  'Stefan and Boltzmann is '//to_text(given)//', but '//to_text(constant)// &
+                  ' in the units of *OPTIONS, UNITS=, '//units%power//'/('//units%length//'^2 '// &
+                  units%temperature//'^4); give that, or correct UNITS=')
             end associate
          case ('MATERIAL')
             m = m + 1
          case ('ELASTIC')
-            if (any(solves_mechanics(deck%model%steps%analysis))) call &
-               check_property(deck%cards%keywords(k), m, pascal, deck)
+            if (any(solves_mechanics(deck%model%steps%analysis))) call check_property(m, pascal, &
+               deck)
          case ('CONDUCTIVITY')
-            if (min(degree, metre) > 0.0_dp .and. &
-               any(solves_heat(deck%model%steps%analysis))) call &
-               check_property(deck%cards%keywords(k), m, watt/(metre*degree), deck)
+            if (min(degree, metre) > 0.0_dp .and. any(solves_heat( &
+               deck%model%steps%analysis))) call check_property(m, watt/(metre*degree), deck)
          case ('LATENT HEAT')
-            call check_latent_heat(deck%cards%keywords(k), m, degree, deck)
+            call check_latent_heat(m, degree, deck)
          case default
             cycle
          end select
@@ -98,8 +97,7 @@ contains
    end subroutine check_units
 
    !> Warns of a latent heat that is none of a solid beside its specific heat.
-   subroutine check_latent_heat(card, m, degree, deck)
-      type(keyword_card_type), intent(in) :: card
+   subroutine check_latent_heat(m, degree, deck)
       integer, intent(in) :: m                            ! index of its material, or 0
       real(dp), intent(in) :: degree                      ! [K], 0 where not known
       type(deck_type), intent(inout) :: deck
@@ -110,16 +108,15 @@ contains
          if (.not. allocated(material%melting)) return
          ratio = degree*sum(material%melting%content)/heat_capacity(material)
          if (ratio < latent_ratios(1) .or. ratio > latent_ratios(2)) call deck%warning( &
-            card%place, 'the latent heat of '//material%name//' is '//to_text(ratio)// &
-            ' K times its specific heat, beyond the '//to_text(latent_ratios(1))//' to '// &
-            to_text(latent_ratios(2))//' K of solids; give it in the units of *SPECIFIC HEAT, '// &
-            'such as J/kg, not kJ/kg')
+            deck%card%place, 'the latent heat of '//material%name//' is '//to_text(ratio)//' K '// &
+            'times its specific heat, beyond the '//to_text(latent_ratios(1))//' to '//to_text( &
+            latent_ratios(2))//' K of solids; give it in the units of *SPECIFIC HEAT, such as '// &
+            'J/kg, not kJ/kg')
       end associate
    end subroutine check_latent_heat
 
    !> Warns of a property whose first constant is none of a solid.
-   subroutine check_property(card, m, unit, deck)
-      type(keyword_card_type), intent(in) :: card
+   subroutine check_property(m, unit, deck)
       integer, intent(in) :: m                            ! index of its material, or 0
       real(dp), intent(in) :: unit                        ! [Pa] or [W/(m K)], 0 where not known
       type(deck_type), intent(inout) :: deck
@@ -128,32 +125,31 @@ contains
       integer :: i
 
       if (m == 0 .or. unit <= 0.0_dp) return
-      ends = merge(moduli, conductivities, card%name == 'ELASTIC')
-      si_unit = trim(merge('Pa     ', 'W/(m K)', card%name == 'ELASTIC'))
+      ends = merge(moduli, conductivities, deck%card%name == 'ELASTIC')
+      si_unit = trim(merge('Pa     ', 'W/(m K)', deck%card%name == 'ELASTIC'))
       associate (material => deck%model%materials(m))
          do i = 1, size(material%given)
-            if (property_keywords(material%given(i)%kind) /= card%name) cycle
+            if (property_keywords(material%given(i)%kind) /= deck%card%name) cycle
             associate (values => material%given(i)%values(1, :))
                value = maxval(values)
                if (value*unit <= ends(2)) value = minval(values)
             end associate
             if (value*unit >= ends(1) .and. value*unit <= ends(2)) cycle
-            call deck%warning(card%place, trim(material%given(i)%names(1))//' '//to_text(value)// &
-               ' of '//material%name//' is '//to_text(value*unit)//' '//si_unit//' in the '// &
-               'units of *OPTIONS, UNITS=, beyond the '//to_text(ends(1))//' to '//to_text( &
+            call deck%warning(deck%card%place, trim(material%given(i)%names(1))//' '//to_text( &
+               value)//' of '//material%name//' is '//to_text(value*unit)//' '//si_unit//' in '// &
+               'the units of *OPTIONS, UNITS=, beyond the '//to_text(ends(1))//' to '//to_text( &
                ends(2))//' '//si_unit//' of solids; give it in those units, or correct UNITS=')
          end do
       end associate
    end subroutine check_property
 
-   subroutine check_zero(card, deck)
-      type(keyword_card_type), intent(in) :: card
+   subroutine check_zero(deck)
       type(deck_type), intent(inout) :: deck
       character(:), allocatable :: message
       type(unit_type) :: scale
       real(dp) :: least(2)
 
-      if (.not. card%has('ABSOLUTE ZERO')) return
+      if (.not. deck%card%has('ABSOLUTE ZERO')) return
       scale = unit_of(scale_label(deck%model%units%temperature), temperatures)
       least = temperature_range(deck%model)
       associate (given => deck%model%constants%absolute_zero, label => deck%model%units%temperature)
@@ -171,7 +167,7 @@ contains
             return
          end if
       end associate
-      call deck%warning(card%place_of('ABSOLUTE ZERO'), message)
+      call deck%warning(deck%card%place_of('ABSOLUTE ZERO'), message)
    end subroutine check_zero
 
    !> Size of a unit, 0 where the label is not known.
