@@ -1,5 +1,4 @@
-!> Cards -> model. The cards are read by theme, so their order matters only where the dialect
-!> says so.
+!> Cards -> model. They are read by theme: their order matters only where the dialect says so.
 module deck_builder
    use materials, only: melts, of_expansion, of_specific_heat
    use mesh_bodies, only: find_bodies

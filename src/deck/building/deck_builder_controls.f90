@@ -184,8 +184,7 @@ contains
       end if
    end subroutine build_start
 
-   !> Reads *NODE PRINT or *EL PRINT. The first card of its keyword in a step ends the tables of
-   !> former steps.
+   !> Reads *NODE PRINT or *EL PRINT. The first one in a step ends the tables of former steps.
    subroutine build_print(is_later, deck, requests)
       logical, intent(inout) :: is_later   !! whether its step has one before; becomes true
       type(deck_type), intent(inout) :: deck

@@ -173,8 +173,7 @@ contains
       end associate
    end subroutine read_table
 
-   !> Temperatures behind the rows of a *GAP CONDUCTANCE: one for all of them means nothing, several
-   !> ascend.
+   !> Temperatures behind the rows of a table: one for all of them means nothing, several ascend.
    subroutine check_temperatures(rows, temperature, deck, valid)
       type(data_card_type), intent(in) :: rows(:)
       real(dp), intent(in) :: temperature(:)               ! (rows) 0 for none

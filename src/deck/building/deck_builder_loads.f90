@@ -197,8 +197,7 @@ contains
       end if
    end subroutine build_nodal_load
 
-   !> Takes one data card: node or set, first and last degree of freedom, value; or node or set and
-   !> the name of a support.
+   !> Node or set, first and last degree of freedom, value; or node or set and name of a support.
    subroutine build_boundary(data, request, deck)
       type(data_card_type), intent(in) :: data
       type(request_type), intent(inout) :: request         !! step, amplitude, place
@@ -326,8 +325,7 @@ contains
       end select
    end subroutine add_support
 
-   !> Takes a request for reference nodes of sections, which have degrees of freedom 3, 4 and 5 in
-   !> generalized plane strain.
+   !> Takes a request for reference nodes of sections, which have degrees of freedom 3, 4 and 5.
    subroutine take_along_z(data, dof, request, deck, taken, valid)
       type(data_card_type), intent(in) :: data
       integer, intent(in) :: dof

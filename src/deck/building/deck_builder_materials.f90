@@ -126,8 +126,7 @@ contains
       if (valid) call set_property(material, property)
    end subroutine build_property
 
-   !> TYPE= of expansion and conductivity. CalculiX reads the first letters only, so longer words
-   !> are in decks for it.
+   !> TYPE= of expansion and conductivity, whose first letters alone CalculiX reads.
    logical function is_isotropic(deck)
       type(deck_type), intent(inout) :: deck
       character(:), allocatable :: symmetry
@@ -367,8 +366,7 @@ contains
       end associate
    end subroutine check_reference
 
-   !> Gives the elements of its set a section; its trusses take it later. Sections are not sound
-   !> where that set is not known.
+   !> Gives the elements of its set a section, which is not sound where the set is not known.
    subroutine give_section(section, deck, set)
       integer, intent(in) :: section
       type(deck_type), intent(inout) :: deck

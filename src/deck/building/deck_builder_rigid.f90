@@ -25,8 +25,7 @@ module deck_builder_rigid
 
 contains
 
-   !> Reads the cards START, LINE and CIRCL of a surface: the end of a piece and, of an arc, its
-   !> centre.
+   !> Reads the cards START, LINE and CIRCL: the end of a piece and, of an arc, its centre.
    subroutine build_drawing(deck, surface)
       type(deck_type), intent(inout) :: deck
       type(surface_type), intent(inout) :: surface         !! receives the drawing
@@ -124,8 +123,7 @@ contains
          'than 60: round the corner by arcs of less than 180 degrees, or end the surface there')
    end subroutine check_smooth
 
-   !> Turns a line from one with the body on its right, as decks have it, to one with the body on
-   !> its left, as faces have it.
+   !> Decks have the body on the right of a line, faces on their left.
    pure subroutine turn_round(line)
       type(drawn_line_type), intent(inout) :: line
       real(dp), allocatable :: start(:, :)
@@ -237,8 +235,7 @@ contains
       surface%drawing = line
    end subroutine join_lines
 
-   !> Reads what follows the reference node, which is known: sets of nodes and elements, and the
-   !> surfaces that are lines.
+   !> Reads what follows the reference node, which is known: nodes, elements, surfaces of lines.
    subroutine build_rigid_body(deck, coupling)
       type(deck_type), intent(inout) :: deck
       type(coupling_type), intent(inout) :: coupling       !! receives the rest

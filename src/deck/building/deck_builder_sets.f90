@@ -31,8 +31,7 @@ module deck_builder_sets
 
 contains
 
-   !> Builds all sets of nodes or of elements, lines among them; a name that is on several cards
-   !> is one set.
+   !> Builds all sets of nodes, or of elements and lines; a name on several cards is one set.
    subroutine build_sets(noun, deck)
       character(*), intent(in) :: noun                           !! node or element
       type(deck_type), intent(inout) :: deck
@@ -355,8 +354,7 @@ contains
          'no side here is free: each belongs to another element, too')
    end subroutine add_free_faces
 
-   !> Adds the faces under the lines of a set; the first line under which there is none, or one
-   !> inside a body, is an error.
+   !> Adds the faces under lines; the first line with none, or one inside a body, is an error.
    subroutine add_line_faces(data, deck, found)
       type(data_card_type), intent(in) :: data
       type(deck_type), intent(inout) :: deck
@@ -400,8 +398,7 @@ contains
       end associate
    end subroutine add_line_faces
 
-   !> The side that has the nodes of a line, whose midside node is its second or its third; 0 where
-   !> there is none.
+   !> The side with the nodes of a line, whose midside node is its second or third; 0 for none.
    pure integer function side_of_line(nodes, sides) result(side)
       integer, intent(in) :: nodes(3)
       type(element_sides_type), intent(in) :: sides

@@ -113,8 +113,7 @@ contains
       call deck%error(data%place(i), ''''//data%text(i)//''' is neither REL nor ABS')
    end function is_relative
 
-   !> The first field: index into known quantities, 0 after an error; of checks it may say which
-   !> value the quantity reaches.
+   !> The first field: index into known quantities, 0 after an error; perhaps the value it reaches.
    subroutine read_quantity(data, known, refusal, deck, quantity, level)
       type(data_card_type), intent(in) :: data
       type(quantity_type), intent(in) :: known(:)

@@ -1,5 +1,4 @@
-!> Loads and supports once all cards are read: whether they act on something, and in a step that
-!> has use for them.
+!> Whether loads and supports act on something, and in a step that has use for them.
 module load_checks
    use equations, only: constrained_nodes, equation_nodes
    use deck_context, only: deck_type
@@ -104,8 +103,7 @@ contains
       end do
    end subroutine check_amplitudes
 
-   !> Index of the first step in which heat is loaded or a temperature prescribed; that behind the
-   !> last step when there is none.
+   !> Index of the first step that loads heat or prescribes a temperature; behind the last for none.
    pure integer function first_heat(deck)
       type(deck_type), intent(in) :: deck
       integer :: i
@@ -165,8 +163,7 @@ contains
          'acts there'//others(size(elements), '; elements with such a side: '))
    end subroutine check_faces
 
-   !> Checks *BOUNDARY: whether it acts on something, in a step that has use for it, and says one
-   !> thing only.
+   !> Checks whether *BOUNDARY acts on something, in a step that has use for it, and says one thing.
    subroutine check_boundaries(deck, used)
       type(deck_type), intent(inout) :: deck
       logical, intent(in) :: used(0:)                      ! (0:nodes) whether elements have them

@@ -71,8 +71,7 @@ contains
       end do
    end subroutine check_planes
 
-   !> Elements meet along whole sides, two at each, and surfaces are faces of which one side is
-   !> free.
+   !> Elements meet along whole sides, two at each; of the faces of surfaces one side is free.
    subroutine check_sides(deck, inverted, uses)
       type(deck_type), intent(inout) :: deck
       logical, intent(in) :: inverted(:)   !! (elements) whether their sides may not be as meant
@@ -210,8 +209,7 @@ contains
       end do
    end function is_of_section
 
-   !> The Jacobian is positive at the integration points of every element. Elements that go round
-   !> clockwise are reported once.
+   !> The Jacobian is positive at all integration points. Elements that are clockwise are told once.
    subroutine check_jacobians(deck, inverted)
       type(deck_type), intent(inout) :: deck
       logical, intent(out) :: inverted(:)    !! (elements) whether its sides may be wrong
@@ -329,8 +327,7 @@ contains
       end do
    end function folded_node
 
-   !> No side of an element is far shorter than the others. Corners in one place are left to the
-   !> Jacobian.
+   !> No side of an element is far shorter than others; corners in one place go by the Jacobian.
    subroutine check_slenderness(deck)
       type(deck_type), intent(inout) :: deck
       real(dp) :: least, ratio

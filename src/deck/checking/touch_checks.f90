@@ -15,12 +15,10 @@ module touch_checks
    private
    public :: check_touches
 
-   !> Part of the shorter side by which it may be apart from the other one: coordinates of decks
-   !> have few digits.
+   !> Part of the shorter side by which it may be apart from the other: decks have few digits.
    real(dp), parameter :: close_by = 1.0e-3_dp
 
-   !> Part of the shorter side along which two sides must lie on each other: at corners of bodies
-   !> they meet in a point.
+   !> Part of the shorter side along which two sides must touch: at corners they meet in a point.
    real(dp), parameter :: overlapping = 0.05_dp
 
    real(dp), parameter :: margin = 0.1_dp   !! part of a side by which it may bulge past its nodes
@@ -37,8 +35,7 @@ module touch_checks
 
 contains
 
-   !> Warns of faces that touch and are not related, once for two bodies, for the seams of a body
-   !> and for hanging nodes.
+   !> Warns of faces that touch unrelated, once for two bodies, seams of a body and hanging nodes.
    subroutine check_touches(deck)
       type(deck_type), intent(inout) :: deck
       type(element_sides_type) :: sides

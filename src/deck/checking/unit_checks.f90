@@ -53,8 +53,7 @@ module unit_checks
 
 contains
 
-   !> Warns of constants in another unit than the deck says, and of temperatures below absolute
-   !> zero.
+   !> Warns of constants in other units than the deck says, and of temperatures below absolute zero.
    subroutine check_units(deck)
       type(deck_type), intent(inout) :: deck
       real(dp) :: constant, degree, metre, pascal, watt

@@ -48,8 +48,7 @@ contains
          index(value(:len(value) - 1), '*') > 0 .or. parameters%find(name_at(value, 1)) > 0
    end function is_arithmetic
 
-   !> Value of an expression. Every number, also an intermediate one, is 0 or between 1E-100 and
-   !> 1E100.
+   !> Value of an expression. Every number, also an intermediate one, is 0 or from 1E-100 to 1E100.
    pure subroutine evaluate(expression, parameters, values, number, fault)
       character(*), intent(in) :: expression
       type(name_index_type), intent(in) :: parameters     !! the earlier ones

@@ -296,8 +296,7 @@ contains
       end associate
    end subroutine take_flat
 
-   !> Adds a card of a part for an instance. Errors that the copy has are reported where the card
-   !> of the part is.
+   !> Adds a card of a part for an instance. Errors in it are reported where that of the part is.
    subroutine copy_card(card, instance, all)
       type(keyword_card_type), intent(in) :: card           !! one of its keyword cards
       type(instance_type), intent(in) :: instance

@@ -94,8 +94,7 @@ contains
       call take_data_line(self, line, image, cards, report)
    end subroutine take_line
 
-   !> Warns of the first character of a line that looks like another one. The origin of an expected
-   !> value is any text.
+   !> Warns of the first character of a line that looks like another one, but not in SOURCE=.
    subroutine suspect_look_alike(line, image, report)
       character(*), intent(in) :: line
       integer, intent(in) :: image
@@ -167,8 +166,7 @@ contains
       end if
    end subroutine take_fields
 
-   !> A complete keyword card. *INCLUDE is obeyed and leaves no card: what it includes is in its
-   !> place.
+   !> A complete keyword card. *INCLUDE leaves none: what it includes is in its place.
    subroutine take_keyword(self, fields, cards, report)
       type(card_lines_type), intent(inout) :: self
       type(field_type), allocatable, intent(inout) :: fields(:)

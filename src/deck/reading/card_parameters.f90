@@ -1,5 +1,4 @@
-!> Values of the parameters of a keyword card, with an error at their place where they are not what
-!> they should be.
+!> Values of the parameters of a keyword card, with an error at their place where they are wrong.
 module card_parameters
    use cards, only: keyword_card_type
    use deck_report, only: deck_report_type

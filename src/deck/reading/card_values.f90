@@ -307,8 +307,7 @@ contains
       call read_real(decimals, number, may_be_decimals)
    end function may_be_decimals
 
-   !> Warns of a field that is read and means nothing where it may be the decimals of the field
-   !> before it.
+   !> Warns of a field that means nothing where it may be the decimals of the field before it.
    subroutine check_unneeded(data, i, what, report, group)
       type(data_card_type), intent(in) :: data
       integer, intent(in) :: i                            !! position of the field, from 2

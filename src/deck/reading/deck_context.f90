@@ -202,8 +202,7 @@ contains
       if (valid) call self%look_up(noun, to_upper(name), data%place(position), index)
    end subroutine need_item
 
-   !> Indexes of the items that a field of a data card names, by a name or by a pattern; none after
-   !> an error.
+   !> Indexes of the items that a field means by a name or by a pattern; none after an error.
    subroutine need_items(self, data, position, noun, what, indexes)
       class(deck_type), intent(inout) :: self           !! receives errors
       type(data_card_type), intent(in) :: data
@@ -221,8 +220,7 @@ contains
       end if
    end subroutine need_items
 
-   !> Indexes of the items, among the first ones, whose names a field means by a pattern. That there
-   !> is none is an error.
+   !> Indexes of the items, among the first ones, that a field means by a pattern; none is an error.
    subroutine find_matches(self, data, position, noun, indexes, known)
       class(deck_type), intent(inout) :: self           !! receives the error
       type(data_card_type), intent(in) :: data

@@ -1,5 +1,4 @@
-!> *PARAMETER: names with values, used as <name> in the deck, and the command line's --set that
-!> overrides them.
+!> *PARAMETER: names with values, used as <name> in the deck, and --set that overrides them.
 module deck_parameters
    use arithmetic, only: arithmetic_fault_type, evaluate, is_arithmetic
    use card_fields, only: first_text, last_text, without_quotes

@@ -190,8 +190,7 @@ contains
       deallocate (report%source%earlier)
    end subroutine take_earlier_steps
 
-   !> Reads lines of the earlier deck, which has those of included files behind *INCLUDE. Its checks
-   !> were judged in its run.
+   !> Reads lines of the earlier deck, those of included files among them, without its *VERIFY.
    subroutine take_earlier(first, last, open_lines, cards, report)
       integer, intent(in) :: first, last                     ! images
       type(card_lines_type), intent(inout) :: open_lines

@@ -35,8 +35,7 @@ module deck_report
       character(:), allocatable :: name   !! in upper case; empty for any
    end type lost_type
 
-   !> A message in the order of the deck. Where it is one mistake on many lines of a card, the first
-   !> of them tells it for all.
+   !> A message in the order of the deck. It may stand for further lines with the same mistake.
    type :: printed_diagnostic_type
       integer :: index = 0        !! of the diagnostic
       integer :: more_lines = 0   !! further lines with the mistake, which are not told
@@ -97,8 +96,7 @@ contains
       call self%error(place, message)
    end subroutine root_cause
 
-   !> Warns of what is hardly meant. Errors on its card image follow from it and are replaced by
-   !> this message.
+   !> Warns of what is hardly meant. Errors on its card image follow from it: it replaces them.
    subroutine possible_cause(self, place, message)
       class(deck_report_type), intent(inout) :: self
       type(place_type), intent(in) :: place           !! where
@@ -151,8 +149,7 @@ contains
       end do
    end function root_cause_of
 
-   !> Reports that something is not there, unless a reported error may hide its definition; one name
-   !> is told once.
+   !> Reports once that something is not there, unless a reported error may hide its definition.
    subroutine missing(self, place, message, noun, name)
       class(deck_report_type), intent(inout) :: self
       type(place_type), intent(in) :: place           !! where
@@ -270,8 +267,7 @@ contains
       end do
    end function first_error
 
-   !> Prints errors and warnings in the order of the deck, each with its card image and a caret; at
-   !> most 50 errors.
+   !> Prints warnings and at most 50 errors in the order of the deck, with their cards and carets.
    subroutine print_report(self, unit)
       class(deck_report_type), intent(in) :: self
       integer, intent(in) :: unit                     !! open for formatted output

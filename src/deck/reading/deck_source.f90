@@ -1,5 +1,4 @@
-!> The lines of a deck as they are in its files: the deck itself and, where they are included, the
-!> others.
+!> The lines of a deck as they are in its files: the deck itself, and those that it includes.
 module deck_source
    use card_places, only: place_type
    use file_calls, only: read_file
@@ -123,8 +122,7 @@ contains
       end do
    end subroutine read_lines
 
-   !> Why the contents of a file are no text in UTF-8 or Latin-1 with ends of line; empty where they
-   !> are.
+   !> Why the contents of a file are no text in UTF-8 or Latin-1 with ends of line; else empty.
    pure function text_fault(contents) result(fault)
       character(*), intent(in) :: contents
       character(:), allocatable :: fault

@@ -1,5 +1,4 @@
-!> Whether the cards of a deck are where they may be, and whether those that every deck needs
-!> are there.
+!> Whether the cards of a deck are where they may be, and those that every deck needs are there.
 module deck_structure
    use card_parameters, only: chosen
    use cards, only: cards_type, keyword_card_type

@@ -87,8 +87,7 @@ contains
          any(card%name == [character(5) :: 'NGEN', 'ELGEN', 'NFILL', 'NCOPY'])
    end function generates
 
-   !> First and last node, increment: the nodes between the two, at equal distances on a line or,
-   !> with LINE=C, on a circle.
+   !> First and last node, increment: nodes at equal distances on a line or, with LINE=C, a circle.
    subroutine generate_nodes(card, data, all)
       type(keyword_card_type), intent(in) :: card
       type(data_card_type), intent(in) :: data

@@ -110,8 +110,7 @@ contains
       end do
    end function node_place
 
-   !> Remembers the node or element of the last data card; fields that are no numbers are reported
-   !> elsewhere.
+   !> Remembers the node or element of the last data card; what is no number is reported elsewhere.
    subroutine keep_last(all)
       type(growing_cards_type), intent(inout) :: all
       integer :: number
@@ -127,8 +126,7 @@ contains
       end associate
    end subroutine keep_last
 
-   !> Numbers of a set of the cards so far, each once and ascending. What is no number and no set so
-   !> far is reported elsewhere.
+   !> Numbers of a set of the cards so far, each once and ascending; others are reported elsewhere.
    function members_of(all, keyword, name) result(numbers)
       type(growing_cards_type), intent(in) :: all
       character(*), intent(in) :: keyword           !! NSET or ELSET
@@ -193,8 +191,7 @@ contains
       call append(names, to_upper(name))
    end subroutine add_name
 
-   !> Keyword card and data card of a node or element, the last ones where there are several; 0
-   !> where it is not given.
+   !> Keyword card and data card of a node or element, of several the last ones; 0 for none.
    pure function card_of(number, given) result(card)
       integer, intent(in) :: number                 !! of a node or element
       type(number_list_type), intent(in) :: given   !! as of growing_cards_type

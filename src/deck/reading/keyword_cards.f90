@@ -191,8 +191,7 @@ contains
       card%parameters = found(:n)
    end subroutine take_parameters
 
-   !> Reports a number among the parameters: the decimals of a value, or the first of data that
-   !> are on the keyword card.
+   !> Reports a number among the parameters: decimals of a value, or data on the keyword card.
    subroutine report_number(fields, i, report)
       type(field_type), intent(in) :: fields(:)
       integer, intent(in) :: i
@@ -216,8 +215,7 @@ contains
          'of their own: write '//list//' below the keyword')
    end subroutine report_number
 
-   !> Takes one parameter and checks it against the table. A misspelt one is taken as the one that
-   !> it likely is.
+   !> Takes one parameter by the table; a misspelt one is taken as the one that it likely is.
    subroutine take_parameter(field, report, cards, card, parameter, valid)
       type(field_type), intent(in) :: field
       type(deck_report_type), intent(inout) :: report

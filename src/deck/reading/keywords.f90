@@ -1,5 +1,4 @@
-!> The keywords of the dialect with their limits and parameters, and what to write in place of
-!> others, as one table.
+!> The keywords with their limits and parameters, and what to write in place of others, as a table.
 module keywords
    use spelling, only: full_word
    use text, only: append, is_same_name, split_words, string_type, to_text, to_upper, &
@@ -558,8 +557,7 @@ contains
       end do
    end function word_advice
 
-   !> Whether an unknown keyword is itself a word that tells what is meant, so that its spelling
-   !> does not count.
+   !> Whether an unknown keyword is itself a word of advice, so that its spelling does not count.
    pure logical function is_word(name)
       character(*), intent(in) :: name         !! without the star
       integer :: i
