@@ -174,9 +174,7 @@ contains
    subroutine note_defaults(deck)
       type(deck_type), intent(inout) :: deck
 
-      if (deck%temperatures%count == 0) then
-         call deck%note('no initial temperature is given: it is 0')
-      end if
+      if (deck%temperatures%count == 0) call deck%note('no initial temperature is given: it is 0')
       if (allocated(deck%mesh%initial_stress) .and. .not. &
          any(solves_mechanics(deck%model%steps%analysis))) then
          call deck%note('initial stresses are ignored: no step solves equilibrium')

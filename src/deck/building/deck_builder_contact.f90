@@ -25,10 +25,9 @@ contains
    !> Builds all interfaces, one for each data card, and their clearances.
    subroutine build_contacts(deck)
       type(deck_type), intent(inout) :: deck
-      integer, allocatable :: places(:)
+      integer, allocatable :: places(:), contacts(:)
       type(contact_definition_type) :: contact
       character(:), allocatable :: master, slave, text
-      integer, allocatable :: contacts(:)
       real(dp) :: value
       integer :: i, k, n
 

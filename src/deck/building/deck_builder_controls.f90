@@ -125,8 +125,7 @@ contains
                to_text(sums(1))//', c1 + c2 = '//to_text(sums(2))//', a2 + a3 + b2 + b3 = '// &
                to_text(sums(3))//' must be equal')
          else
-            scheme = thermal_scheme_type(given(1:3)/sums(1), given(4:6)/sums(1), &
-               given(7:8)/sums(1))
+            scheme = thermal_scheme_type(given(1:3)/sums(1), given(4:6)/sums(1), given(7:8)/sums(1))
          end if
       end associate
    end subroutine build_thermal_scheme
@@ -167,12 +166,10 @@ contains
       given = 0.0_dp
       sound = .true.
       do k = 1, size(deck%card%data)
-         associate (data => deck%card%data(k))
-            call read_row(data, '@contact pair/conductance >0', deck, value, valid)
-            call deck%need_item(data, 1, 'contact pair', 'contact pair', i)
-            if (valid .and. i > 0) given(i) = value(2)
-            sound = sound .and. valid .and. i > 0
-         end associate
+         call read_row(deck%card%data(k), '@contact pair/conductance >0', deck, value, valid)
+         call deck%need_item(deck%card%data(k), 1, 'contact pair', 'contact pair', i)
+         if (valid .and. i > 0) given(i) = value(2)
+         sound = sound .and. valid .and. i > 0
       end do
       if (.not. sound) return
       i = findloc(given > 0.0_dp, .false., dim=1)
@@ -275,9 +272,8 @@ contains
       if (i > 0) then
          if (needed(meanings(i)) /= '') then
             ! Its card may be one with an error.
-            if (.not. deck%has_errors()) call deck%warning(data%place(position), key// &
-               ' of *'//card%name//' is not there without *'//needed(meanings(i))//': it is '// &
-               'not printed')
+            if (.not. deck%has_errors()) call deck%warning(data%place(position), key//' of *'// &
+               card%name//' is not there without *'//needed(meanings(i))//': it is not printed')
          else if (all(quantities /= meanings(i))) then
             quantities = [quantities, meanings(i)]
          end if

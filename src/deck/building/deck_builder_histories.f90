@@ -171,10 +171,8 @@ contains
       places = cards_of(deck%cards, 'INITIAL CONDITIONS')
       do k = 1, size(places)
          call deck%open_card(places(k))
-         if (deck%card%lacks('TYPE')) then
-            call deck%error(deck%card%place, '*INITIAL CONDITIONS needs TYPE=TEMPERATURE or '// &
-               'TYPE=STRESS')
-         end if
+         if (deck%card%lacks('TYPE')) call deck%error(deck%card%place, '*INITIAL CONDITIONS '// &
+            'needs TYPE=TEMPERATURE or TYPE=STRESS')
          kind = choice(deck%card, 'TYPE', initial_kinds, deck, '')
          if (any(kind == [character(8) :: 'FIELD', 'SOLUTION', 'VELOCITY'])) call deck%note( &
             '*INITIAL CONDITIONS, TYPE='//kind//' is ignored: nothing depends on it')

@@ -60,10 +60,8 @@ contains
             call check_law(law_place, deck%model%interactions(n), deck)
          case ('FRICTION', 'GAP LAW', 'GAP CONDUCTANCE', 'GAP HEAT GENERATION', 'GAP RADIATION', &
             'SURFACE BEHAVIOR', 'WEAR')
-            if (n == 0 .and. len(deck%card%meant) == 0) then
-               call deck%missing(deck%card%place, '*'//deck%card%name//' has no *SURFACE '// &
-                  'INTERACTION before it')
-            end if
+            if (n == 0 .and. len(deck%card%meant) == 0) call deck%missing(deck%card%place, '*'// &
+               deck%card%name//' has no *SURFACE INTERACTION before it')
          case default
             cycle
          end select
@@ -94,9 +92,8 @@ contains
          if (any(deck%card%name == ends)) exit
          if (size(deck%card%data) == 0 .and. all(deck%card%name /= [character(19) :: 'FRICTION', &
             'GAP HEAT GENERATION', 'SURFACE BEHAVIOR', 'WEAR'])) cycle
-         if (any(deck%card%name == ['GAP LAW        ', 'GAP CONDUCTANCE', 'GAP RADIATION  '])) then
-            law_place = deck%card%data(1)%place(1)
-         end if
+         if (any(deck%card%name == ['GAP LAW        ', 'GAP CONDUCTANCE', &
+            'GAP RADIATION  '])) law_place = deck%card%data(1)%place(1)
          i = findloc(once == deck%card%name, .true., dim=1)
          if (i > 0 .and. taken(i) > 0) call deck%error(deck%card%place, 'a second *'// &
             deck%card%name//' in one surface interaction; the first is on '//deck%source%words_of( &

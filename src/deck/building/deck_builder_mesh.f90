@@ -126,8 +126,7 @@ contains
       type(data_card_type), intent(in) :: data
       type(deck_type), intent(inout) :: deck
       integer, intent(out) :: number
-      real(dp), intent(out) :: coordinates(2)
-      real(dp), intent(out) :: z
+      real(dp), intent(out) :: coordinates(2), z
       logical, intent(out) :: valid                 ! whether the coordinates are known
       character(*), parameter :: names = 'xy'
       integer :: i
@@ -143,9 +142,7 @@ contains
             ': 0 is used')
       end do
       call read_field(data, 4, 'z?', deck, z, valid)
-      if (data%has(4)) then
-         call deck%note('*NODE: third coordinates are ignored')
-      end if
+      if (data%has(4)) call deck%note('*NODE: third coordinates are ignored')
       call check_extra(data, 7, 'number, x, y', deck)
       if (size(data%fields) > 4) call deck%note('*NODE: numbers after the third coordinate are '// &
          'ignored')
@@ -306,10 +303,8 @@ contains
       integer :: i
 
       do i = place%image - 1, 1, -1
-         associate (line => deck%source%images(i)%value)
-            if (index(line, gmsh_comment) == 1) exit
-            if (keyword_of(line) == 'NODE') return
-         end associate
+         if (index(deck%source%images(i)%value, gmsh_comment) == 1) exit
+         if (keyword_of(deck%source%images(i)%value) == 'NODE') return
       end do
       if (i > 0) call deck%warning(place, 'gmsh calls all elements CPS, plane stress; say what '// &
          'is meant by *OPTIONS, PLANE=STRAIN, STRESS or AXISYMMETRIC', 'gmsh')

@@ -39,9 +39,8 @@ contains
             call deck%need_target('node', deck%card%data(j), 1, target, valid)
             if (valid) named(target%members(deck%mesh%node_sets)) = .true.
          end do
-         if (deck%error_count() == errors .and. all(deck%element_valid)) then
-            call find_faces(named, deck, n)
-         end if
+         if (deck%error_count() == errors .and. all(deck%element_valid)) call find_faces(named, &
+            deck, n)
          if (size(deck%mesh%surfaces(n)%faces, 2) == 0) call deck%lose('surface')
       end do
    end subroutine build_node_surfaces

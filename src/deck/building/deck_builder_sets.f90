@@ -372,11 +372,9 @@ contains
       do i = 1, size(members)
          side = side_of_line(deck%line_nodes(:, members(i)), sides)
          if (side == 0) cycle
-         associate (element => sides%elements(1, side))
-            uses(i) = count(sides%elements(:, side) > 0)
-            if (uses(i) == 1) call found%add([4*element + &
-               findloc(sides%of_element(:, element), side, dim=1) - 1])
-         end associate
+         uses(i) = count(sides%elements(:, side) > 0)
+         if (uses(i) == 1) call found%add([4*sides%elements(1, side) + findloc(sides%of_element(:, &
+            sides%elements(1, side)), side, dim=1) - 1])
       end do
       if (all(uses == 1)) return
       bad = findloc(uses == 1, .false., dim=1)

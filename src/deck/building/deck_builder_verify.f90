@@ -232,10 +232,9 @@ contains
       type(data_card_type), intent(in) :: data
       integer, intent(in) :: kind
       type(deck_type), intent(inout) :: deck
-      logical :: used(0:size(deck%mesh%node_number))
+      logical :: used(0:size(deck%mesh%node_number)), valid
       type(target_type) :: target
       integer, allocatable :: nodes(:)
-      logical :: valid
 
       valid = .true.
       call deck%need_target('node', data, 2, target, valid)
@@ -375,9 +374,8 @@ contains
       if (target%is_relative .and. target%bound >= 1.0_dp) call deck%error(data%place(2), 'a '// &
          'target relative to the value must be below 1; 0.01 is 1 %')
       target%interface = 0
-      if (data%has(4) .and. size(deck%model%contacts) > 0) then
-         call deck%look_up('contact pair', data%text(4), data%place(4), target%interface)
-      end if
+      if (data%has(4) .and. size(deck%model%contacts) > 0) call deck%look_up('contact pair', &
+         data%text(4), data%place(4), target%interface)
       do i = 1, size(deck%model%accuracy%targets)
          associate (other => deck%model%accuracy%targets(i))
             if (other%quantity == target%quantity .and. any(target%interface == [0, &

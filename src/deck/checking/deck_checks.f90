@@ -137,8 +137,7 @@ contains
    !> Warns of the first element of some kinds that has the material and is not in plane stress.
    subroutine warn_of_kinds(deck, m, kinds, subject, trouble)
       type(deck_type), intent(inout) :: deck
-      integer, intent(in) :: m
-      integer, intent(in) :: kinds(:)
+      integer, intent(in) :: m, kinds(:)
       character(*), intent(in) :: subject, trouble
       integer :: e, kind
 

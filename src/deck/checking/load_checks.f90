@@ -110,9 +110,8 @@ contains
 
       first_heat = size(deck%model%steps) + 1
       do i = 1, deck%boundaries%count
-         if (deck%boundaries%items(i)%component == dof_temperature) then
-            first_heat = min(first_heat, max(1, deck%boundaries%items(i)%step))
-         end if
+         if (deck%boundaries%items(i)%component == dof_temperature) first_heat = min(first_heat, &
+            max(1, deck%boundaries%items(i)%step))
       end do
       do i = 1, deck%loads%count
          if (is_heat(deck%loads%items(i)%kind)) then
@@ -208,10 +207,9 @@ contains
    !> Where ORDER=1 drops all nodes of a data card, their corners have values in their place.
    subroutine check_dropped(deck)
       type(deck_type), intent(inout) :: deck
-      integer :: corners(2, size(deck%mesh%node_number))
+      integer :: corners(2, size(deck%mesh%node_number)), i, j, card
       integer :: first(3, size(deck%mesh%node_number))   ! first step that gives a value
       integer, allocatable :: nodes(:)
-      integer :: i, j, card
 
       corners = side_corners(deck%mesh)
       first = huge(first)

@@ -84,10 +84,8 @@ contains
       words = ''
       amplitude = 0
       do s = 1, n
-         associate (step => model%steps(s))
-            call look_at(step%boundaries%amplitude, s)
-            call look_at(step%loads%amplitude, s)
-         end associate
+         call look_at(model%steps(s)%boundaries%amplitude, s)
+         call look_at(model%steps(s)%loads%amplitude, s)
       end do
       associate (step => model%steps(n))
          if (amplitude > 0) then
@@ -230,10 +228,9 @@ contains
          call check_strained_capacity(place, deck)
          return
       end if
-      call deck%error(place, 'DILATATION needs temperatures above absolute zero, '// &
-         to_text(deck%model%constants%absolute_zero)//', but node '// &
-         to_text(deck%mesh%node_number(n))//' starts at '//to_text(deck%model%initial_temperature( &
-         n)))
+      call deck%error(place, 'DILATATION needs temperatures above absolute zero, '//to_text( &
+         deck%model%constants%absolute_zero)//', but node '//to_text(deck%mesh%node_number(n))// &
+         ' starts at '//to_text(deck%model%initial_temperature(n)))
    end subroutine check_dilatation
 
    !> The capacity at constant strain, rho c_p - T0 beta:alpha, must be positive, or heat would make

@@ -41,8 +41,7 @@ contains
       type(element_sides_type) :: sides
       type(touch_type), allocatable :: touches(:)
       !> (2, touches) touches share a message: hanging nodes, 0, or faces of the same two bodies
-      integer, allocatable :: key(:, :)
-      integer, allocatable :: order(:)
+      integer, allocatable :: key(:, :), order(:)
       logical, allocatable :: shared(:, :)                ! (2, sides)
       integer :: bodies(2), first, i, k, last
 
@@ -259,10 +258,8 @@ contains
       integer, intent(in) :: side
       character(:), allocatable :: words
 
-      associate (e => sides%elements(1, side))
-         words = 'side '//to_text(findloc(sides%of_element(:, e), side, dim=1))//' of element '// &
-            to_text(mesh%element_number(e))
-      end associate
+      words = 'side '//to_text(findloc(sides%of_element(:, sides%elements(1, side)), side, &
+         dim=1))//' of element '//to_text(mesh%element_number(sides%elements(1, side)))
    end function side_words
 
    pure real(dp) function length_of(mesh, ends) result(length)

@@ -129,10 +129,8 @@ contains
       associate (material => deck%model%materials(m))
          do i = 1, size(material%given)
             if (property_keywords(material%given(i)%kind) /= deck%card%name) cycle
-            associate (values => material%given(i)%values(1, :))
-               value = maxval(values)
-               if (value*unit <= ends(2)) value = minval(values)
-            end associate
+            value = maxval(material%given(i)%values(1, :))
+            if (value*unit <= ends(2)) value = minval(material%given(i)%values(1, :))
             if (value*unit >= ends(1) .and. value*unit <= ends(2)) cycle
             call deck%warning(deck%card%place, trim(material%given(i)%names(1))//' '//to_text( &
                value)//' of '//material%name//' is '//to_text(value*unit)//' '//si_unit//' in '// &

@@ -282,8 +282,7 @@ contains
          call fail(self, place, 'unknown function '//name//known_choices(name, &
             split_words(functions)))
       end select
-      if (.not. valid) call fail(self, place, name//' of '//all_digits(number)// &
-         ' is not a number')
+      if (.not. valid) call fail(self, place, name//' of '//all_digits(number)//' is not a number')
       call check(self, place, number)
    end subroutine apply
 
@@ -293,9 +292,8 @@ contains
       integer, intent(in) :: place                ! of the operator or function
       real(dp), intent(inout) :: number           ! 0 after an error
 
-      if (abs(number) > largest_magnitude .or. &
-         abs(number) > 0.0_dp .and. abs(number) < smallest_magnitude) call fail(self, place, &
-         'the result is not between 1E-100 and 1E100')
+      if (abs(number) > largest_magnitude .or. abs(number) > 0.0_dp .and. abs(number) < &
+         smallest_magnitude) call fail(self, place, 'the result is not between 1E-100 and 1E100')
       if (allocated(self%fault%message)) number = 0.0_dp
    end subroutine check
 

@@ -235,9 +235,8 @@ contains
             'instance '//instance%name//' is defined twice')
       end do
       open%instances = [open%instances, instance]
-      if (instance%offset > 0) call add_note(all%notes, '*INSTANCE '//instance%name// &
-         ': numbers of its nodes and elements are those of the part plus '// &
-         to_text(instance%offset))
+      if (instance%offset > 0) call add_note(all%notes, '*INSTANCE '//instance%name//': '// &
+         'numbers of its nodes and elements are those of the part plus '//to_text(instance%offset))
       call need_parameter(card, 'PART', report, part)
       if (len(part) == 0) return
       do i = 1, size(open%parts)

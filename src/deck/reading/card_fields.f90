@@ -64,8 +64,7 @@ contains
       integer, intent(in) :: image                                !! its running number
       type(deck_report_type), intent(inout) :: report             !! receives errors
       type(field_type), allocatable, intent(out) :: fields(:)     !! at least one field
-      integer :: commas(len(line) + 1)
-      integer :: i, n, first, opened, start, told
+      integer :: commas(len(line) + 1), i, n, first, opened, start, told
       logical :: holds_commas
 
       holds_commas = .false.

@@ -319,9 +319,7 @@ contains
             cycle
          end if
          call self%parameters%substitute(fields(i), report)
-         if (index(fields(i)%text, '"') > 0) then
-            fields(i)%text = without_quotes(fields(i)%text)
-         end if
+         if (index(fields(i)%text, '"') > 0) fields(i)%text = without_quotes(fields(i)%text)
       end do
       if (self%keyword == 'PARAMETER') return
       call add_data(cards, fields, &

@@ -31,9 +31,7 @@ contains
       character(:), allocatable, intent(out) :: value   !! value in upper case; empty after an error
 
       value = to_upper(card%text(name))
-      if (card%lacks(name)) then
-         call report%error(card%place, '*'//card%name//' needs '//name//'=')
-      end if
+      if (card%lacks(name)) call report%error(card%place, '*'//card%name//' needs '//name//'=')
    end subroutine need_parameter
 
    subroutine take_integer_parameter(card, name, report, value, limit)

@@ -158,9 +158,8 @@ contains
       class(keyword_line_type), intent(in) :: card   !! what is added
 
       if (.not. allocated(cards%keywords)) allocate(cards%keywords(64))
-      if (cards%keyword_count == size(cards%keywords)) then
-         call resize_keywords(cards%keywords, cards%keyword_count, 2*cards%keyword_count)
-      end if
+      if (cards%keyword_count == size(cards%keywords)) call resize_keywords(cards%keywords, &
+         cards%keyword_count, 2*cards%keyword_count)
       cards%keyword_count = cards%keyword_count + 1
       cards%keywords(cards%keyword_count)%keyword_line_type = card
       allocate (cards%keywords(cards%keyword_count)%data(0))
@@ -173,9 +172,8 @@ contains
       type(place_type), intent(in) :: end                         !! where a missing field would be
 
       associate (card => cards%keywords(cards%keyword_count))
-         if (card%data_count == size(card%data)) then
-            call resize_data(card%data, card%data_count, 2*card%data_count + 4)
-         end if
+         if (card%data_count == size(card%data)) call resize_data(card%data, card%data_count, &
+            2*card%data_count + 4)
          card%data_count = card%data_count + 1
          call move_alloc(fields, card%data(card%data_count)%fields)
          card%data(card%data_count)%end = end

@@ -195,9 +195,8 @@ contains
       do i = 1, size(self%setting_names)
          associate (name => self%setting_names(i)%value)
             if (self%names%find(name) > 0) cycle
-            call report%missing(place_type(), '--set '// &
-               name//': no *PARAMETER of the deck has this name'// &
-               nearest_known(to_upper(name), self%names%known()), 'parameter', name)
+            call report%missing(place_type(), '--set '//name//': no *PARAMETER of the deck has '// &
+               'this name'//nearest_known(to_upper(name), self%names%known()), 'parameter', name)
          end associate
       end do
    end subroutine check_settings

@@ -47,9 +47,8 @@ contains
       call repeat_steps(cards, report)
       if (len(fault) > 0) then
          inquire (file=path, exist=exists)
-         if (.not. exists .and. index(path, '.inp', back=.true.) /= len(path) - 3) then
-            fault = fault//', and no '//path//'.inp'
-         end if
+         if (.not. exists .and. index(path, '.inp', back=.true.) /= len(path) - 3) fault = fault// &
+            ', and no '//path//'.inp'
          call report%error(place_type(), 'the deck cannot be read: '//fault)
       else if (size(cards%keywords) == 0 .and. .not. report%has_errors()) then
          call report%error(place_type(), 'the deck is empty')

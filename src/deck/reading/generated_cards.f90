@@ -331,15 +331,13 @@ contains
          if (is_there(i)) is_there(i) = norm2(node_place(all, numbers(i) + change) - x(:, i)) <= &
             same_place*maxval(abs(x))
       end do
-      associate (data => card%data(1))
-         call add_copies_card(card, 'NODE', 'NSET', '', all)
-         do i = 1, size(numbers)
-            if (.not. is_there(i)) call add_numbers(data, [numbers(i) + change], all, x(:, i))
-         end do
-         if (.not. (any(is_there) .and. card%has('NEW SET'))) return
-         call add_copies_card(card, 'NSET', 'NSET', '', all)
-         call add_numbers(data, pack(numbers + change, is_there), all)
-      end associate
+      call add_copies_card(card, 'NODE', 'NSET', '', all)
+      do i = 1, size(numbers)
+         if (.not. is_there(i)) call add_numbers(card%data(1), [numbers(i) + change], all, x(:, i))
+      end do
+      if (.not. (any(is_there) .and. card%has('NEW SET'))) return
+      call add_copies_card(card, 'NSET', 'NSET', '', all)
+      call add_numbers(card%data(1), pack(numbers + change, is_there), all)
    end subroutine copy_nodes
 
    subroutine read_copy(card, all, motion)
@@ -403,8 +401,7 @@ contains
    !> The nodes of an element the other way round: 1 4 3 2, and its midside nodes 8 7 6 5.
    pure function reflected(nodes) result(back)
       integer, intent(in) :: nodes(:)
-      integer :: back(size(nodes))
-      integer :: corners
+      integer :: back(size(nodes)), corners
 
       corners = size(nodes)
       if (any(corners == [6, 8])) corners = corners/2

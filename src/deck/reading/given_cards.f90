@@ -195,8 +195,7 @@ contains
    pure function card_of(number, given) result(card)
       integer, intent(in) :: number                 !! of a node or element
       type(number_list_type), intent(in) :: given   !! as of growing_cards_type
-      integer :: card(2)
-      integer :: at
+      integer :: card(2), at
 
       associate (list => given%numbers())
          at = findloc(list(1::3), number, dim=1, back=.true.)

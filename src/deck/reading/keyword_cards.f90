@@ -270,9 +270,8 @@ contains
       valid = len(known%name) > 0 .and. len(fault) == 0 .and. known%status == built
       card%flawed = card%flawed .or. field%undefined .or. &
          (report%error_count() > errors .and. .not. valid)
-      if (len(known%name) > 0 .and. known%status == not_needed .and. &
-         report%error_count() == errors) call add_note(cards%notes, '*'//card%name//': '// &
-         known%name//' is ignored')
+      if (len(known%name) > 0 .and. known%status == not_needed .and. report%error_count() == &
+         errors) call add_note(cards%notes, '*'//card%name//': '//known%name//' is ignored')
    end subroutine take_parameter
 
    !> Reports a parameter that the keyword does not have, and finds the one that it likely is. On
@@ -299,9 +298,8 @@ contains
       i = nearest_name(name, names)
       if (i > 0 .and. len(hint) == 0) then
          if (is_slip(name, names(i)%value)) known = find_parameter(card%known, names(i)%value)
-         if (len(known%name) > 0 .or. is_near(name, names(i)%value)) then
-            hint = 'the nearest known is '//names(i)%value
-         end if
+         if (len(known%name) > 0 .or. is_near(name, names(i)%value)) hint = 'the nearest known '// &
+            'is '//names(i)%value
       end if
       if (is_output(card%name)) then
          if (len(known%name) > 0) then

@@ -371,8 +371,7 @@ contains
 
    !> The names of all keywords: first those of known_keywords, then those of other programs.
    pure function known_names() result(names)
-      type(string_type), allocatable :: names(:)
-      type(string_type), allocatable :: others(:)
+      type(string_type), allocatable :: names(:), others(:)
       integer :: i, k
 
       allocate(names(0))
