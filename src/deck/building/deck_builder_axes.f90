@@ -1,7 +1,6 @@
 !> *TRANSFORM -> nodes with axes of their own; *ORIENTATION -> axes of materials.
 module deck_builder_axes
-   use card_parameters, only: choice
-   use card_values, only: read_row
+   use card_values, only: choice, read_row
    use cards, only: data_card_type
    use deck_context, only: deck_type
    use deck_structure, only: cards_of

@@ -1,8 +1,8 @@
 !> *CONTACT PAIR, *CLEARANCE and *TIE -> contact between surfaces, and surfaces that are tied;
 !> *CHANGE FRICTION, *MODEL CHANGE and *CONTACT INTERFERENCE -> what a step changes of contact.
 module deck_builder_contact
-   use card_parameters, only: choice, need_parameter, needed_choice, take_parameter
-   use card_values, only: check_extra, read_field
+   use card_values, only: choice, need_parameter, needed_choice, take_parameter, check_extra, &
+      read_field
    use cards, only: data_card_type
    use contact_definitions, only: contact_changes_type, contact_definition_type, &
       friction_change_type, interference_type, pair_change_type, pairing_nodes, pairing_surfaces

@@ -1,8 +1,7 @@
 !> Cards of a step beside its loads: *FIXED POINT, *THERMAL SCHEME and *START; *NODE PRINT and
 !> *EL PRINT, tables of the listing.
 module deck_builder_controls
-   use card_parameters, only: choice, needed_choice, take_parameter
-   use card_values, only: read_row
+   use card_values, only: choice, needed_choice, take_parameter, read_row
    use cards, only: data_card_type, keyword_card_type
    use controls, only: continuation_type, crank_nicolson_scheme, explicit_scheme, &
       fixed_point_type, galerkin_scheme, implicit_scheme, l_stable_scheme, method_names, &

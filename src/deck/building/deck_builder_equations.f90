@@ -1,8 +1,7 @@
 !> *EQUATION, *COUPLING with *KINEMATIC, *RIGID BODY -> linear equations between degrees of freedom;
 !> *PRE-TENSION SECTION -> a body cut in two, and the section that joins its faces again.
 module deck_builder_equations
-   use card_parameters, only: need_parameter
-   use card_values, only: read_field, read_row
+   use card_values, only: need_parameter, read_field, read_row
    use deck_builder_rigid, only: build_rigid_body, check_rigid_masters, need_faces
    use deck_context, only: deck_type
    use deck_source, only: place_type

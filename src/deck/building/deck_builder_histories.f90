@@ -3,8 +3,8 @@
 !> points of its solid elements, into which it turns plane ones.
 module deck_builder_histories
    use amplitudes, only: amplitude_type
-   use card_parameters, only: choice, chosen, need_parameter, take_parameter
-   use card_values, only: decimal_comma, read_field, read_row, report_decimal_comma
+   use card_values, only: choice, chosen, need_parameter, take_parameter, decimal_comma, &
+      read_field, read_row, report_decimal_comma
    use cards, only: data_card_type
    use deck_context, only: deck_type
    use deck_structure, only: cards_of

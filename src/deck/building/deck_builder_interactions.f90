@@ -1,12 +1,12 @@
 !> *SURFACE INTERACTION with *FRICTION and *SURFACE BEHAVIOR, and the laws of its conductance.
 module deck_builder_interactions
-   use card_parameters, only: choice, take_parameter
-   use card_values, only: check_ascending, check_unneeded, read_row, read_rows
+   use card_values, only: choice, take_parameter, check_ascending, check_unneeded, read_row, &
+      read_rows
    use conductance_laws, only: conductance, conductance_law_type, law_jump, law_none, &
       table_jump, varies_with_temperature
    use contact_definitions, only: interaction_type
-   use deck_builder_gap_conductance, only: build_gap_conductance, is_of_clearance
-   use deck_builder_gap_laws, only: build_friction_heat, build_gap_radiation, build_gap_law
+   use deck_builder_gap_laws, only: build_gap_conductance, is_of_clearance, build_friction_heat, &
+      build_gap_radiation, build_gap_law
    use deck_context, only: deck_type
    use deck_report, only: frictionless
    use deck_source, only: place_type

@@ -1,7 +1,6 @@
 !> *BOUNDARY, *CLOAD, *DLOAD, ... -> requests, applied when all is read.
 module deck_builder_loads
-   use card_parameters, only: choice
-   use card_values, only: check_extra, read_field, read_row
+   use card_values, only: choice, check_extra, read_field, read_row
    use cards, only: data_card_type
    use deck_builder_element_loads, only: build_element_load
    use deck_context, only: deck_type

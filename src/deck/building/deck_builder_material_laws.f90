@@ -1,8 +1,7 @@
 !> *PLASTIC, *CYCLIC HARDENING, *CREEP, *ANNEAL TEMPERATURE and *LATENT HEAT -> laws of a material.
 module deck_builder_material_laws
    use annealing, only: annealed_law
-   use card_parameters, only: choice, take_parameter
-   use card_values, only: check_ascending, read_row, read_rows
+   use card_values, only: choice, take_parameter, check_ascending, read_row, read_rows
    use creep_laws, only: hardens_by_strain
    use deck_context, only: deck_type
    use hardening_laws, only: yield_table_type

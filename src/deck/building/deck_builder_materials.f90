@@ -1,8 +1,7 @@
 !> *MATERIAL with *ELASTIC, *EXPANSION, *CONDUCTIVITY and *DENSITY; *SOLID SECTION, which gives
 !> elements their material, its axes and their thickness.
 module deck_builder_materials
-   use card_parameters, only: choice, take_parameter
-   use card_values, only: check_ascending, check_unneeded, read_row
+   use card_values, only: choice, take_parameter, check_ascending, check_unneeded, read_row
    use deck_builder_equations, only: find_reference
    use deck_builder_material_laws, only: build_inelasticity, complete_law, build_melting
    use deck_context, only: deck_type

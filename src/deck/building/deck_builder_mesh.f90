@@ -2,8 +2,7 @@
 !> the curves of a drawing: they are no elements of the mesh, but their sets name nodes, and the
 !> faces under them.
 module deck_builder_mesh
-   use card_parameters, only: need_parameter
-   use card_values, only: check_extra, check_unneeded, may_be_decimals, read_field
+   use card_values, only: need_parameter, check_extra, check_unneeded, may_be_decimals, read_field
    use cards, only: data_card_type, keyword_card_type
    use deck_context, only: deck_type, plane_by_element
    use deck_reader, only: keyword_of

@@ -1,7 +1,6 @@
 !> *SURFACE, TYPE=NODE: the faces whose nodes the surface names.
 module deck_builder_node_surfaces
-   use card_parameters, only: chosen, surface_kinds
-   use card_values, only: read_row
+   use card_values, only: chosen, surface_kinds, read_row
    use deck_context, only: deck_type
    use deck_structure, only: cards_of
    use element_kinds, only: element_corner_count

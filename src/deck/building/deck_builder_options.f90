@@ -1,6 +1,6 @@
 !> *HEADING, *OPTIONS, *PHYSICAL CONSTANTS, *SOLVER and *REFINE.
 module deck_builder_options
-   use card_parameters, only: choice, need_parameter, needed_choice, take_parameter
+   use card_values, only: choice, need_parameter, needed_choice, take_parameter
    use controls, only: solver_by_size, solver_mumps, solver_skyline, tail_full, tail_sparse
    use deck_builder_rigid, only: need_faces
    use deck_context, only: deck_type

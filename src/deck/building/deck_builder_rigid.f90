@@ -1,8 +1,7 @@
 !> *RIGID BODY -> what follows a reference node; its lines: those of *SURFACE, TYPE=SEGMENTS, and of
 !> R2D2 and RAX2 elements, what all of them are checked for, and where decks may name them.
 module deck_builder_rigid
-   use card_parameters, only: choice, is_on
-   use card_values, only: check_extra, read_field, read_row
+   use card_values, only: choice, is_on, check_extra, read_field, read_row
    use cards, only: data_card_type
    use deck_context, only: deck_type
    use deck_source, only: place_type

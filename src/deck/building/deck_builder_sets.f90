@@ -1,7 +1,6 @@
 !> *NSET and *ELSET, NSET= on *NODE and ELSET= on *ELEMENT -> named sets; *SURFACE -> sets of faces.
 module deck_builder_sets
-   use card_parameters, only: choice, need_parameter, surface_kinds
-   use card_values, only: check_extra, read_field, read_row
+   use card_values, only: choice, need_parameter, surface_kinds, check_extra, read_field, read_row
    use cards, only: data_card_type, keyword_card_type
    use deck_builder_rigid, only: build_drawing, build_line_surface, is_rigid_side, lines_of, &
       need_faces

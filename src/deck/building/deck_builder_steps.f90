@@ -1,7 +1,7 @@
 !> *STEP to *END STEP -> steps with their increments; loads become requests.
 module deck_builder_steps
-   use card_parameters, only: choice, is_on, take_parameter
-   use card_values, only: decimal_comma, read_row, report_decimal_comma
+   use card_values, only: choice, is_on, take_parameter, decimal_comma, read_row, &
+      report_decimal_comma
    use cards, only: data_card_type, keyword_card_type
    use controls, only: explicit_scheme, l_stable_scheme
    use deck_builder_contact, only: build_contact_change

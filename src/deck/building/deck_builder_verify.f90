@@ -1,8 +1,7 @@
 !> *VERIFY -> checks of the results, *ACCURACY -> targets of the uncertainties.
 module deck_builder_verify
    use accuracy_targets, only: accuracy_target_type
-   use card_parameters, only: needed_choice, take_parameter
-   use card_values, only: check_extra, read_field, read_row
+   use card_values, only: needed_choice, take_parameter, check_extra, read_field, read_row
    use cards, only: data_card_type
    use equations, only: constrained_nodes, equation_nodes, section_nodes
    use deck_builder_steps, only: increment_rounding

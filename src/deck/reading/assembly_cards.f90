@@ -4,7 +4,7 @@
 !> become INSTANCE.NAME. Nodes and elements of the first instance keep their numbers; those of the
 !> next ones, and last those of the assembly itself, are raised by multiples of a power of ten.
 module assembly_cards
-   use card_parameters, only: chosen, need_parameter, surface_kinds, take_parameter
+   use card_values, only: chosen, need_parameter, surface_kinds, take_parameter
    use cards, only: add_data, add_keyword, add_note, cards_type, data_card_type, field_type, &
       keyword_card_type, replace_cards
    use deck_report, only: deck_report_type

@@ -2,14 +2,13 @@
 module card_lines
    use card_fields, only: drop_empty_end, first_text, is_comment, is_keyword, last_text, &
       split_fields, without_quotes, fixed_columns_type, split_columns, take_format
-   use card_parameters, only: take_parameter
-   use card_typos, only: check_commas, lacks_star
+   use card_values, only: take_parameter
+   use keyword_cards, only: check_commas, lacks_star, is_parameter, make_keyword_card
    use cards, only: add_data, add_keyword, add_note, cards_type, field_type, keyword_card_type
    use deck_parameters, only: deck_parameters_type
    use deck_report, only: deck_report_type
    use deck_source, only: place_type
    use element_types, only: element_type_fields
-   use keyword_cards, only: is_parameter, make_keyword_card
    use keywords, only: is_output
    use spelling, only: find_look_alike
    use text, only: to_text, to_upper

@@ -1,8 +1,7 @@
 !> A deck while its model is built: what is wrong with it, numbers and names -> indexes, places for
 !> messages, loads to be applied when the mesh is final; and how a card names nodes and elements.
 module deck_context
-   use card_parameters, only: need_parameter
-   use card_values, only: read_field
+   use card_values, only: need_parameter, read_field
    use cards, only: add_note, cards_type, data_card_type, keyword_card_type
    use deck_report, only: deck_report_type
    use deck_source, only: place_type

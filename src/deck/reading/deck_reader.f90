@@ -6,10 +6,9 @@ module deck_reader
    use cards, only: cards_type, trim_cards
    use deck_report, only: deck_report_type
    use deck_source, only: earlier_deck_type, place_type, read_lines
-   use deck_structure, only: check_data_counts
+   use deck_structure, only: check_data_counts, repeat_steps
    use generated_cards, only: generate_cards
    use keywords, only: keyword_lines
-   use repeated_steps, only: repeat_steps
    use text, only: append, string_type, to_text, to_upper, without_blanks
    use utf8, only: first_byte
    implicit none

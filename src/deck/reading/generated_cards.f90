@@ -1,7 +1,6 @@
 !> *NGEN, *NFILL, *NCOPY, *ELGEN and *ELCOPY -> the *NODE and *ELEMENT cards that they stand for.
 module generated_cards
-   use card_parameters, only: choice, need_parameter, take_parameter
-   use card_values, only: read_row
+   use card_values, only: choice, need_parameter, take_parameter, read_row
    use cards, only: add_data, add_keyword, cards_type, data_card_type, keyword_card_type, &
       replace_cards
    use deck_report, only: deck_report_type
