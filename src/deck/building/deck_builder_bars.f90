@@ -48,12 +48,13 @@ contains
       type(deck_type), intent(inout) :: deck
       type(bar_type), intent(inout) :: of_line(:)
       integer, allocatable :: members(:)
-      integer :: dof(2), i, k
+      integer :: dof(2), i, k, set
       real(dp) :: stiffness(1)
       logical :: has_dofs, sound, valid
 
-      call take_lines(deck, members)
-      if (.not. allocated(members) .or. size(deck%card%data) == 0) return
+      call deck%need_named('ELSET', 'element set', set)
+      if (set == 0 .or. size(deck%card%data) == 0) return
+      members = deck%line_sets(set)%members
       valid = size(members) > 0 .and. all(deck%line_kind(members) > truss)
       if (.not. valid) call deck%error(deck%card%place_of('ELSET'), 'this set has elements '// &
          'that are no springs')
@@ -105,10 +106,11 @@ contains
       type(deck_type), intent(inout) :: deck
       type(bar_type), intent(inout) :: of_line(:)
       integer, allocatable :: members(:)
-      integer :: i
+      integer :: i, set
 
       if (deck%has_errors()) return
-      call take_lines(deck, members)
+      call deck%need_named('ELSET', 'element set', set)
+      members = deck%line_sets(set)%members
       members = pack(members, deck%line_kind(members) == truss)
       if (size(members) == 0) return
       associate (material => deck%model%materials(deck%model%sections(n)%material), area => &
@@ -132,16 +134,6 @@ contains
          end do
       end associate
    end subroutine take_section
-
-   !> The lines of the set that ELSET= names; unallocated where there is no such set.
-   subroutine take_lines(deck, members)
-      type(deck_type), intent(inout) :: deck
-      integer, allocatable, intent(out) :: members(:)
-      integer :: set
-
-      call deck%need_named('ELSET', 'element set', set)
-      if (set > 0) members = deck%line_sets(set)%members
-   end subroutine take_lines
 
    !> Makes the distance of two nodes an elongation.
    subroutine set_axial(nodes, deck, bar)

@@ -290,7 +290,7 @@ contains
       end do
    end subroutine read_degrees
 
-   !> Builds all sections, behind the couplings: their nodes are behind all others.
+   !> Builds all pre-tension sections, behind the couplings: their nodes are behind all others.
    subroutine build_pre_tensions(deck)
       type(deck_type), intent(inout) :: deck
       type(coupling_type) :: section
@@ -301,11 +301,8 @@ contains
       do k = 1, size(places)
          call deck%open_card(places(k))
          call build_section(deck, section)
-         if (section%opposite > 0) then
-            deck%model%couplings = [deck%model%couplings, section]
-         else
-            call deck%lose('equation')
-         end if
+         if (section%opposite == 0) call deck%lose('equation')
+         if (section%opposite > 0) deck%model%couplings = [deck%model%couplings, section]
       end do
    end subroutine build_pre_tensions
 

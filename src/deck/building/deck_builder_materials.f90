@@ -54,26 +54,20 @@ contains
             call deck%lose('*CONDUCTIVITY')
             call deck%lose('*DENSITY')
             call deck%lose('*SPECIFIC HEAT')
-         case ('ELASTIC', 'EXPANSION', 'CONDUCTIVITY', 'DENSITY', 'SPECIFIC HEAT')
+         case ('ELASTIC', 'EXPANSION', 'CONDUCTIVITY', 'DENSITY', 'SPECIFIC HEAT', 'LATENT HEAT', &
+            'PLASTIC', 'CYCLIC HARDENING', 'CREEP', 'INELASTIC HEAT FRACTION', &
+            'ANNEAL TEMPERATURE')
             if (n == 0) then
                if (len(deck%card%meant) == 0) call deck%missing(deck%card%place, '*'// &
                   deck%card%name//' has no *MATERIAL before it')
                call deck%lose('*'//deck%card%name)
-            else if (size(deck%card%data) > 0) then
+            else if (size(deck%card%data) == 0 .and. deck%card%name(:1) /= 'I') then
+               cycle
+            else if (any(property_keywords == deck%card%name)) then
                call build_property(deck, deck%model%materials(n))
-            end if
-         case ('LATENT HEAT')
-            if (n > 0) then
-               if (size(deck%card%data) > 0) melting(n) = k
-            else if (len(deck%card%meant) == 0) then
-               call deck%missing(deck%card%place, '*LATENT HEAT has no *MATERIAL before it')
-            end if
-         case ('PLASTIC', 'CYCLIC HARDENING', 'CREEP', 'INELASTIC HEAT FRACTION', 'ANNEAL '// &
-            'TEMPERATURE')
-            if (n == 0) then
-               if (len(deck%card%meant) == 0) call deck%missing(deck%card%place, '*'// &
-                  deck%card%name//' has no *MATERIAL before it')
-            else if (size(deck%card%data) > 0 .or. deck%card%name(:1) == 'I') then
+            else if (deck%card%name == 'LATENT HEAT') then
+               melting(n) = k
+            else
                call build_inelasticity(deck, deck%model%materials(n))
             end if
          case default

@@ -24,6 +24,7 @@ contains
    !> Reads *HEADING, *OPTIONS, *PHYSICAL CONSTANTS, *SOLVER and *REFINE.
    subroutine build_options(deck)
       type(deck_type), intent(inout) :: deck
+      character(:), allocatable :: solver, tail
       integer :: k
 
       deck%model%heading = ''
@@ -52,7 +53,13 @@ contains
             deck%model%constants%has_radiation = deck%model%constants%has_absolute_zero .and. &
                deck%card%has('STEFAN BOLTZMANN')
          case ('SOLVER')
-            call build_solver(deck)
+            tail = choice(deck%card, 'TAIL', 'FULL/SPARSE', deck, '')
+            if (tail == 'FULL') deck%model%tail = tail_full
+            if (tail == 'SPARSE') deck%model%tail = tail_sparse
+            if (deck%card%has('TAIL') .and. .not. deck%card%has('TYPE')) cycle
+            solver = needed_choice(deck%card, 'TYPE', 'SKYLINE/MUMPS', deck)
+            if (solver == 'SKYLINE') deck%model%solver = solver_skyline
+            if (solver == 'MUMPS') deck%model%solver = solver_mumps
          case ('REFINE')
             if (deck%card%has('SURFACE') .or. deck%card%has('ELSET')) cycle
             if (deck%card%has('DISTANCE')) call deck%error(deck%card%place_of('DISTANCE'), &
@@ -61,26 +68,11 @@ contains
                '*REFINE of the whole model')
             deck%levels_place = deck%card%place_of('LEVELS')
             call take_levels(deck, deck%levels)
-         case ('CONTROLS')
-            call deck%note('*'//deck%card%name//' is ignored')
          case default
             cycle
          end select
       end do
    end subroutine build_options
-
-   subroutine build_solver(deck)
-      type(deck_type), intent(inout) :: deck
-      character(:), allocatable :: solver, tail
-
-      tail = choice(deck%card, 'TAIL', 'FULL/SPARSE', deck, '')
-      if (tail == 'FULL') deck%model%tail = tail_full
-      if (tail == 'SPARSE') deck%model%tail = tail_sparse
-      if (deck%card%has('TAIL') .and. .not. deck%card%has('TYPE')) return
-      solver = needed_choice(deck%card, 'TYPE', 'SKYLINE/MUMPS', deck)
-      if (solver == 'SKYLINE') deck%model%solver = solver_skyline
-      if (solver == 'MUMPS') deck%model%solver = solver_mumps
-   end subroutine build_solver
 
    subroutine build_option_card(deck)
       type(deck_type), intent(inout) :: deck

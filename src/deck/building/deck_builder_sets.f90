@@ -361,7 +361,7 @@ contains
       type(element_sides_type) :: sides
       integer, allocatable :: members(:), uses(:)
       character(:), allocatable :: fault
-      integer :: i, bad, side
+      integer :: i, bad, ends(3), side
 
       call check_extra(data, 1, 'element set of lines', deck)
       if (.not. all(deck%element_valid)) return
@@ -369,7 +369,11 @@ contains
       allocate (uses(size(members)), source=0)
       sides = find_sides(deck%mesh)
       do i = 1, size(members)
-         side = side_of_line(deck%line_nodes(:, members(i)), sides)
+         ends = deck%line_nodes(:, members(i))
+         if (any(ends(:2) == 0)) cycle
+         ! The midside node of a line is its second or its third.
+         side = sides%index_of(ends([1, 3, 2]))
+         if (side == 0 .and. ends(3) > 0) side = sides%index_of(ends)
          if (side == 0) cycle
          uses(i) = count(sides%elements(:, side) > 0)
          if (uses(i) == 1) call found%add([4*sides%elements(1, side) + findloc(sides%of_element(:, &
@@ -394,17 +398,6 @@ contains
             to_text(deck%mesh%node_number(nodes(i)))//' '//fault)
       end associate
    end subroutine add_line_faces
-
-   !> The side with the nodes of a line, whose midside node is its second or third; 0 for none.
-   pure integer function side_of_line(nodes, sides) result(side)
-      integer, intent(in) :: nodes(3)
-      type(element_sides_type), intent(in) :: sides
-
-      side = 0
-      if (any(nodes(:2) == 0)) return
-      side = sides%index_of(nodes([1, 3, 2]))
-      if (side == 0 .and. nodes(3) > 0) side = sides%index_of(nodes)
-   end function side_of_line
 
    !> Every element of a data card has the face.
    subroutine check_face(data, elements, face, deck, valid)

@@ -6,6 +6,7 @@
 !> is left of the pressure at a contact point of such a side at 1e-8.
 module mesh_checks
    use deck_context, only: deck_type
+   use deck_structure, only: cards_of
    use element_kinds, only: axisymmetric, element_corner_count, element_node_count, &
       generalized_strain, linear_kind, plane_strain, side_node_count
    use element_sides, only: side_ends
@@ -14,7 +15,7 @@ module mesh_checks
    use quadrature, only: integration_rule, most_points, point_count
    use shape_functions, only: element_gradients, element_shape, node_position
    use sorting, only: sort_order
-   use text, only: others, to_text, to_upper
+   use text, only: others, to_text
    implicit none
    private
    public :: check_planes, check_sides, check_jacobians, check_folds, check_slenderness, &
@@ -169,10 +170,18 @@ contains
       type(deck_type), intent(inout) :: deck
       integer, intent(inout) :: uses(:, :)   !! (4, elements) elements that meet at each side
       logical :: wrong(size(uses, 1), size(uses, 2))
+      logical :: is_cut(size(deck%mesh%surfaces))
       logical, allocatable :: inside(:)
+      integer, allocatable :: sections(:)
       integer :: i, s
 
       wrong = .false.
+      is_cut = .false.
+      sections = cards_of(deck%cards, 'PRE-TENSION SECTION')
+      do i = 1, size(sections)
+         s = deck%index_of('surface', deck%cards%keywords(sections(i))%text('SURFACE'))
+         if (s > 0) is_cut(s) = .true.
+      end do
       do s = 1, size(deck%mesh%surfaces)
          associate (faces => deck%mesh%surfaces(s)%faces)
             allocate(inside(size(faces, 2)))
@@ -180,10 +189,7 @@ contains
                inside(i) = uses(faces(2, i), faces(1, i)) > 1
                wrong(faces(2, i), faces(1, i)) = wrong(faces(2, i), faces(1, i)) .or. inside(i)
             end do
-            i = findloc(inside, .true., dim=1)
-            if (i > 0) then
-               if (is_of_section(deck, deck%mesh%surfaces(s)%name)) i = 0
-            end if
+            i = findloc(inside .and. .not. is_cut(s), .true., dim=1)
             if (i > 0) call deck%error(deck%face_places(s)%items(i), 'face S'//to_text(faces(2, &
                i))//' of element '//to_text(deck%mesh%element_number(faces(1, i)))//' in '// &
                'surface '//deck%mesh%surfaces(s)%name//' lies inside a body: another element '// &
@@ -195,19 +201,6 @@ contains
       end do
       where (wrong) uses = 0
    end subroutine check_faces
-
-   !> Whether a *PRE-TENSION SECTION cuts a body along a surface.
-   pure logical function is_of_section(deck, surface)
-      type(deck_type), intent(in) :: deck
-      character(*), intent(in) :: surface
-      integer :: k
-
-      is_of_section = .false.
-      do k = 1, size(deck%cards%keywords)
-         if (deck%cards%keywords(k)%name == 'PRE-TENSION SECTION') is_of_section = &
-            is_of_section .or. to_upper(deck%cards%keywords(k)%text('SURFACE')) == surface
-      end do
-   end function is_of_section
 
    !> The Jacobian is positive at all integration points. Elements that are clockwise are told once.
    subroutine check_jacobians(deck, inverted)

@@ -92,20 +92,26 @@ contains
       integer, intent(in) :: instances
       type(deck_report_type), intent(inout) :: report
       integer, intent(out) :: step
-      integer(long) :: largest
-      integer :: k, j
+      integer(long) :: largest, values(7)
+      integer :: i, j, k, number
+      logical :: valid
 
       largest = 1
       do k = 1, size(cards%keywords)
-         select case (cards%keywords(k)%name)
-         case ('NODE', 'ELEMENT', 'NGEN', 'ELGEN')
-            do j = 1, size(cards%keywords(k)%data)
-               largest = &
-                  max(largest, largest_number(cards%keywords(k)%name, cards%keywords(k)%data(j)))
+         associate (card => cards%keywords(k))
+            if (all(card%name /= [character(7) :: 'NODE', 'ELEMENT', 'NGEN', 'ELGEN'])) cycle
+            do j = 1, size(card%data)
+               values = [0, 1, 1, 1, 1, 1, 1]
+               do i = 1, 7
+                  call read_integer(card%data(j)%text(i), number, valid)
+                  if (valid) values(i) = abs(number)
+               end do
+               if (card%name == 'NGEN') values(1) = maxval(values(:2))
+               if (card%name == 'ELGEN') values(1) = values(1) + (values(2) - 1)*values(4) + &
+                  (values(5) - 1)*values(7)
+               largest = max(largest, values(1))
             end do
-         case default
-            cycle
-         end select
+         end associate
       end do
       step = 10
       do while (step <= largest .and. step < 10**9)
@@ -116,24 +122,6 @@ contains
          ' instances would exceed '//to_text(huge(1)))
       step = 0
    end subroutine find_step
-
-   integer(long) function largest_number(keyword, data)
-      character(*), intent(in) :: keyword
-      type(data_card_type), intent(in) :: data
-      integer(long) :: values(7)
-      integer :: i, number
-      logical :: valid
-
-      values = [0, 1, 1, 1, 1, 1, 1]
-      do i = 1, 7
-         call read_integer(data%text(i), number, valid)
-         if (valid) values(i) = abs(number)
-      end do
-      largest_number = values(1)
-      if (keyword == 'NGEN') largest_number = maxval(values(:2))
-      if (keyword == 'ELGEN') largest_number = values(1) + (values(2) - 1)*values(4) + &
-         (values(5) - 1)*values(7)
-   end function largest_number
 
    !> Takes one card where it is.
    subroutine take_card(cards, k, open, all, report)

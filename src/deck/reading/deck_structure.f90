@@ -215,8 +215,8 @@ contains
                   'REPEAT is at most '//to_text(most_repeats))
             end associate
             if (first == 0 .or. repeats > most_repeats) return
-            repeated = pack(cards%keywords(first:k - 1), [(is_repeated(cards%keywords(i)%name), &
-               i=first, k - 1)])
+            repeated = pack(cards%keywords(first:k - 1), [(all(not_repeated /= &
+               cards%keywords(i)%name), i=first, k - 1)])
             associate (n => size(repeated), all => size(cards%keywords))
                allocate (longer(all + repeats*n))
                longer(:k) = cards%keywords(:k)
@@ -267,11 +267,5 @@ contains
       call read_integer(card%text(name), number, is_number)
       if (.not. is_number .or. number < 1) number = 1
    end function number_of
-
-   pure logical function is_repeated(name)
-      character(*), intent(in) :: name
-
-      is_repeated = all(not_repeated /= name)
-   end function is_repeated
 
 end module deck_structure

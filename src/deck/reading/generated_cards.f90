@@ -372,7 +372,7 @@ contains
       character(:), allocatable :: kind, last_kind
       integer, allocatable :: corners(:), numbers(:)
       type(data_card_type) :: data
-      integer :: at(2), errors, i, node_shift, shift
+      integer :: at(2), errors, i, n, node_shift, shift
 
       errors = all%report%error_count()
       call take_old_set(card, 'ELSET', all%elements, all, numbers)
@@ -390,23 +390,16 @@ contains
          last_kind = kind
          data = all%keywords(at(1))%data(at(2))
          corners = corners_of(data)
-         if (card%has('REFLECT')) corners = reflected(corners)
+         if (card%has('REFLECT')) then   ! 1 4 3 2, and midside nodes 8 7 6 5
+            n = size(corners)
+            if (any(n == [6, 8])) n = n/2
+            corners = [corners(1), corners(n:2:-1), corners(size(corners):n + 1:-1)]
+         end if
          data%fields = data%fields(:1)
          data%fields(1)%place = card%place
          call add_numbers(data, [numbers(i) + shift, corners + node_shift], all)
       end do
    end subroutine copy_elements
-
-   !> The nodes of an element the other way round: 1 4 3 2, and its midside nodes 8 7 6 5.
-   pure function reflected(nodes) result(back)
-      integer, intent(in) :: nodes(:)
-      integer :: back(size(nodes)), corners
-
-      corners = size(nodes)
-      if (any(corners == [6, 8])) corners = corners/2
-      back(:corners) = [nodes(1), nodes(corners:2:-1)]
-      back(corners + 1:) = nodes(size(nodes):corners + 1:-1)
-   end function reflected
 
    !> The nodes or elements of OLD SET=.
    subroutine take_old_set(card, keyword, given, all, numbers)
