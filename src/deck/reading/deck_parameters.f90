@@ -18,18 +18,16 @@ module deck_parameters
 
    !> The parameters of a deck.
    type :: deck_parameters_type
-      private
-      type(name_index_type) :: names
-      type(string_type), allocatable :: values(:)           !! their values
-      type(name_index_type) :: settings                     !! names that --set gives
-      type(string_type), allocatable :: setting_names(:)    !! the same as given
-      type(string_type), allocatable :: setting_values(:)   !! their values
+      type(name_index_type) :: names                                 !! those that are defined
+      type(string_type), allocatable, private :: values(:)           !! their values
+      type(name_index_type), private :: settings                     !! names that --set gives
+      type(string_type), allocatable, private :: setting_names(:)    !! the same as given
+      type(string_type), allocatable, private :: setting_values(:)   !! their values
    contains
       procedure :: take_settings
       procedure :: define
       procedure :: substitute
       procedure :: check_settings
-      procedure :: known => known_names
    end type deck_parameters_type
 
 contains
@@ -200,14 +198,6 @@ contains
          end associate
       end do
    end subroutine check_settings
-
-   !> The names that are defined.
-   pure function known_names(self) result(names)
-      class(deck_parameters_type), intent(in) :: self
-      type(string_type), allocatable :: names(:)           !! in upper case
-
-      names = self%names%known()
-   end function known_names
 
    !> A text of the command line without the blanks around it, as fields of a deck are.
    pure function without_blanks_around(string) result(bare)

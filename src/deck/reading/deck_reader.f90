@@ -90,7 +90,7 @@ contains
       type(deck_report_type) :: report
 
       call read_all_lines(path, settings, open_lines, cards, report, fault)
-      names = open_lines%parameters%known()
+      names = open_lines%parameters%names%known()
    end subroutine parameters_of_deck
 
    subroutine read_all_lines(path, settings, open_lines, cards, report, fault)

@@ -5,7 +5,7 @@ module deck_report
    use sorting, only: sort_order
    use messages, only: message_type, print_line
    use name_index, only: name_index_type
-   use text, only: counted, string_type, to_text, to_upper
+   use text, only: append, counted, string_type, to_text, to_upper
    implicit none
    private
    public :: deck_report_type, frictionless, heatless
@@ -237,17 +237,13 @@ contains
    function warnings(self) result(lines)
       class(deck_report_type), intent(in) :: self
       type(string_type), allocatable :: lines(:)      !! one a warning
-      type(printed_diagnostic_type), allocatable :: told(:)
-      type(message_type) :: message
+      type(message_type), allocatable :: list(:)
       integer :: i
 
-      told = told_by(self)
-      told = pack(told, [(self%diagnostics(told(i)%index)%severity == severity_warning, &
-         i=1, size(told))])
-      allocate(lines(size(told)))
-      do i = 1, size(told)
-         message = message_of(self, told(i))
-         lines(i)%value = message%as_line()
+      list = self%messages()
+      allocate (lines(0))
+      do i = 1, size(list)
+         if (list(i)%severity == 'warning') call append(lines, list(i)%as_line())
       end do
    end function warnings
 
