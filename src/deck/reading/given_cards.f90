@@ -135,51 +135,38 @@ contains
       type(string_type), allocatable :: names(:)    ! of it and the sets in it, each once
       type(name_index_type) :: known                ! the same names
       type(number_list_type) :: found
-      integer :: k, n
+      integer :: i, j, k, n, number, range(3)
+      logical :: is_set, valid
 
       call add_name(name, known, names)
       n = 0
       do while (n < size(names))
          n = n + 1
          do k = 1, all%keyword_count
-            if (to_upper(all%keywords(k)%text(keyword)) /= names(n)%value) cycle
-            call add_members(all%keywords(k), keyword, found, known, names)
+            associate (card => all%keywords(k))
+               if (to_upper(card%text(keyword)) /= names(n)%value) cycle
+               is_set = card%name == keyword
+               if (.not. (is_set .or. any(card%name == ['NODE   ', 'ELEMENT']))) cycle
+               do j = 1, card%data_count
+                  range(3) = 1
+                  do i = 1, merge(size(card%data(j)%fields), 1, is_set)
+                     call read_integer(card%data(j)%text(i), number, valid)
+                     if (card%has('GENERATE')) then
+                        if (i <= 3) range(i) = number
+                     else if (valid) then
+                        call found%add([number])
+                     else if (is_set) then
+                        call add_name(card%data(j)%text(i), known, names)
+                     end if
+                  end do
+                  if (card%has('GENERATE') .and. range(3) > 0) call found%add([(i, i=range(1), &
+                     range(2), range(3))])
+               end do
+            end associate
          end do
       end do
       numbers = unique_sorted(found%numbers())
    end function members_of
-
-   !> Adds the members that one card gives a set: numbers, and names of other sets.
-   subroutine add_members(card, keyword, found, known, names)
-      type(keyword_card_type), intent(in) :: card
-      character(*), intent(in) :: keyword
-      type(number_list_type), intent(inout) :: found
-      type(name_index_type), intent(inout) :: known
-      type(string_type), allocatable, intent(inout) :: names(:)
-      integer :: i, j, number, range(3)
-      logical :: valid
-
-      do j = 1, card%data_count
-         associate (data => card%data(j))
-            if (card%name == keyword .and. card%has('GENERATE')) then
-               range(3) = 1
-               do i = 1, min(size(data%fields), 3)
-                  call read_integer(data%text(i), range(i), valid)
-               end do
-               if (range(3) > 0) call found%add([(i, i=range(1), range(2), range(3))])
-            else if (card%name == keyword) then
-               do i = 1, size(data%fields)
-                  call read_integer(data%text(i), number, valid)
-                  if (valid) call found%add([number])
-                  if (.not. valid) call add_name(data%text(i), known, names)
-               end do
-            else if (any(card%name == ['NODE   ', 'ELEMENT'])) then
-               call read_integer(data%text(1), number, valid)
-               if (valid) call found%add([number])
-            end if
-         end associate
-      end do
-   end subroutine add_members
 
    subroutine add_name(name, known, names)
       character(*), intent(in) :: name
