@@ -82,7 +82,7 @@ contains
       type(data_card_type), intent(in) :: data
       type(deck_type), intent(inout) :: deck
       type(transform_type), intent(inout) :: axes          ! whether they are cylindrical is known
-      real(dp) :: given(6), x(3, 2)
+      real(dp) :: given(6), unit(3, 3), x(3, 2)
       logical :: valid
 
       call read_row(data, 'x of point a/y of point a/z of point a?/x of point b/y of point b/'// &
@@ -96,39 +96,31 @@ contains
          if (norm2(x(:2, 2)) > negligible*norm2(x(:, 2)) .or. norm2(x(:, 2)) <= 0.0_dp) call &
             deck%error(data%place(1), 'a cylindrical system of a plane is round an axis along '// &
             'z, such as 0., 0., 0., 0., 0., 1.')
-      else
-         call set_axes(x, axes, valid)
-         if (.not. valid) call deck%error(data%place(1), 'a rectangular system of a plane has '// &
-            'two points, not in line with the origin, that put one of the three axes along z, '// &
-            'such as 1., 1., 0., -1., 1., 0.')
+         return
       end if
-   end subroutine read_axes
-
-   !> The axes in the plane of two points. One of the three axes must be along z.
-   pure subroutine set_axes(x, transform, valid)
-      real(dp), intent(in) :: x(3, 2)
-      type(transform_type), intent(inout) :: transform
-      logical, intent(out) :: valid
-      real(dp) :: axes(3, 3)
-
       valid = all(norm2(x, dim=1) > 0.0_dp)
-      if (.not. valid) return
-      axes(:, 1) = x(:, 1)/norm2(x(:, 1))
-      axes(:, 2) = x(:, 2)/norm2(x(:, 2))
-      axes(:, 2) = axes(:, 2) - dot_product(axes(:, 1), axes(:, 2))*axes(:, 1)
-      valid = norm2(axes(:, 2)) > negligible
-      if (.not. valid) return
-      axes(:, 2) = axes(:, 2)/norm2(axes(:, 2))
-      axes(:, 3) = cshift(axes(:, 1), 1)*cshift(axes(:, 2), 2) - &
-         cshift(axes(:, 1), 2)*cshift(axes(:, 2), 1)
-      transform%out_of_plane = maxloc(abs(axes(3, :)), dim=1)
-      valid = norm2(axes(:2, transform%out_of_plane)) <= negligible
-      associate (first => axes(:2, merge(2, 1, transform%out_of_plane == 1)), &
-         second => axes(:2, merge(2, 3, transform%out_of_plane == 3)))
-         transform%point = first
-         transform%sense = sign(1.0_dp, first(1)*second(2) - first(2)*second(1))
-      end associate
-   end subroutine set_axes
+      if (valid) then
+         unit(:, 1) = x(:, 1)/norm2(x(:, 1))
+         unit(:, 2) = x(:, 2)/norm2(x(:, 2))
+         unit(:, 2) = unit(:, 2) - dot_product(unit(:, 1), unit(:, 2))*unit(:, 1)
+         valid = norm2(unit(:, 2)) > negligible
+      end if
+      if (valid) then
+         unit(:, 2) = unit(:, 2)/norm2(unit(:, 2))
+         unit(:, 3) = cshift(unit(:, 1), 1)*cshift(unit(:, 2), 2) - &
+            cshift(unit(:, 1), 2)*cshift(unit(:, 2), 1)
+         axes%out_of_plane = maxloc(abs(unit(3, :)), dim=1)
+         valid = norm2(unit(:2, axes%out_of_plane)) <= negligible
+         associate (first => unit(:2, merge(2, 1, axes%out_of_plane == 1)), &
+            second => unit(:2, merge(2, 3, axes%out_of_plane == 3)))
+            axes%point = first
+            axes%sense = sign(1.0_dp, first(1)*second(2) - first(2)*second(1))
+         end associate
+      end if
+      if (.not. valid) call deck%error(data%place(1), 'a rectangular system of a plane has two '// &
+         'points, not in line with the origin, that put one of the three axes along z, such as '// &
+         '1., 1., 0., -1., 1., 0.')
+   end subroutine read_axes
 
    !> A node has one transform, and is not on the axis of it.
    subroutine check_nodes(n, deck)

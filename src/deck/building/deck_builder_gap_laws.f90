@@ -85,7 +85,7 @@ contains
       character(*), intent(in) :: kind                     !! CMY or ROSS-STOUTE
       type(deck_type), intent(inout) :: deck
       type(conductance_law_type), intent(inout) :: law     !! receives the closed side
-      real(dp) :: value(5), magnitude
+      real(dp) :: value(5), magnitude, mean   ! harmonic, of the conductivities
       logical :: valid
 
       if (kind == 'CMY') then
@@ -97,31 +97,24 @@ contains
       end if
       law%closed_adds = .true.
       if (.not. valid) return
+      mean = 2/(1/value(1) + 1/value(2))
       if (kind == 'CMY') then
          law%power_n = cmy_exponent
-         magnitude = log(cmy_factor*harmonic_mean(value(1), value(2))) + log(value(3)) - &
-            log(value(4)) - cmy_exponent*log(value(5))
+         magnitude = log(cmy_factor*mean) + log(value(3)) - log(value(4)) - &
+            cmy_exponent*log(value(5))
       else
          law%power_n = 1.0_dp
-         magnitude = log(harmonic_mean(value(1), value(2))) - 0.5_dp*log(value(3)) - &
-            log(value(4)) - log(value(5))
+         magnitude = log(mean) - 0.5_dp*log(value(3)) - log(value(4)) - log(value(5))
       end if
       if (magnitude > log(largest_magnitude)) then
          call deck%error(data%place(1), 'the conductance at a pressure of 1 exceeds '// &
             to_text(largest_magnitude))
       else if (kind == 'CMY') then
-         law%power_c1 = cmy_factor*harmonic_mean(value(1), value(2))*(value(3)/value(4))/ &
-            value(5)**cmy_exponent
+         law%power_c1 = cmy_factor*mean*(value(3)/value(4))/value(5)**cmy_exponent
       else
-         law%power_c1 = harmonic_mean(value(1), value(2))/(sqrt(value(3))*value(4)*value(5))
+         law%power_c1 = mean/(sqrt(value(3))*value(4)*value(5))
       end if
    end subroutine build_solid_spots
-
-   pure real(dp) function harmonic_mean(one, other)
-      real(dp), intent(in) :: one, other    ! > 0
-
-      harmonic_mean = 2/(1/one + 1/other)
-   end function harmonic_mean
 
    !> omega = A/(B + JUMP + ROUGHNESS + gamma) + radiation; A and B of one row, or of a row for each
    !> mean temperature of the faces. A is positive, or 0 where faces radiate.

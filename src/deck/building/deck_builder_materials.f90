@@ -277,7 +277,7 @@ contains
       type(deck_type), intent(inout) :: deck
       integer, allocatable :: places(:)
       real(dp) :: thickness(1)
-      integer :: n, set, unnamed
+      integer :: n, node, other, set, unnamed
       logical :: valid
 
       places = cards_of(deck%cards, 'SOLID SECTION')
@@ -303,8 +303,16 @@ contains
             end if
             call give_section(n, deck, set)
             if (deck%card%has('REF NODE')) then
+               ! Sections may have one in common; the other node the builder of nodes left for it.
                unnamed = unnamed + 1
-               call take_reference(n, unnamed, deck)
+               call find_reference('REF NODE', deck, node)
+               if (any(deck%mesh%element_nodes == node) .and. node > 0) call deck%error( &
+                  deck%card%place_of('REF NODE'), 'elements have node '//to_text( &
+                  deck%mesh%node_number(node))//': REF NODE= is a node of its own')
+               other = findloc(deck%model%sections(:n - 1)%reference(1), node, dim=1)
+               if (node > 0) section%reference = [node, unnamed]
+               if (node > 0 .and. other > 0) section%reference = &
+                  deck%model%sections(other)%reference
             end if
             call check_reference(set, deck)
             if (size(deck%card%data) > 0 .or. set == 0) cycle
@@ -314,25 +322,6 @@ contains
          end associate
       end do
    end subroutine build_sections
-
-   !> Gives a section its reference node. Sections may have one in common.
-   subroutine take_reference(n, unnamed, deck)
-      integer, intent(in) :: n           ! index of the section
-      integer, intent(in) :: unnamed     ! the node that the builder of nodes left for it
-      type(deck_type), intent(inout) :: deck
-      integer :: node, other
-
-      call find_reference('REF NODE', deck, node)
-      if (node == 0) return
-      if (any(deck%mesh%element_nodes == node)) call deck%error(deck%card%place_of('REF NODE'), &
-         'elements have node '//to_text(deck%mesh%node_number(node))//': REF NODE= is a node '// &
-         'of its own')
-      associate (sections => deck%model%sections)
-         other = findloc(sections(:n - 1)%reference(1), node, dim=1)
-         sections(n)%reference = [node, unnamed]
-         if (other > 0) sections(n)%reference = sections(other)%reference
-      end associate
-   end subroutine take_reference
 
    !> Elements in generalized plane strain need a reference node, others have none.
    subroutine check_reference(set, deck)

@@ -76,7 +76,9 @@ contains
 
    subroutine build_option_card(deck)
       type(deck_type), intent(inout) :: deck
-      character(:), allocatable :: plane
+      character(:), allocatable :: plane, rest
+      character(len(deck%card%text('UNITS'))) :: words(5)
+      integer :: blank, i
 
       plane = choice(deck%card, 'PLANE', 'STRAIN/STRESS/AXISYMMETRIC', deck, '')
       if (plane == 'STRAIN') deck%plane = plane_strain
@@ -91,19 +93,12 @@ contains
       end if
       if (deck%card%has('ERRORS')) deck%model%uncertainty = uncertainty_named(choice(deck%card, &
          'ERRORS', uncertainty_words, deck, 'LAST'))
-      if (deck%card%has('UNITS')) call build_units(deck)
-      if (.not. deck%card%has('LOAD')) return
-      deck%load_set = to_upper(deck%card%text('LOAD'))
-      deck%load_place = deck%card%place_of('LOAD')
-   end subroutine build_option_card
-
-   !> UNITS="length stress power temperature time", the last three of which may be left out.
-   subroutine build_units(deck)
-      type(deck_type), intent(inout) :: deck
-      character(:), allocatable :: rest
-      character(len(deck%card%text('UNITS'))) :: words(5)
-      integer :: i, blank
-
+      if (deck%card%has('LOAD')) then
+         deck%load_set = to_upper(deck%card%text('LOAD'))
+         deck%load_place = deck%card%place_of('LOAD')
+      end if
+      if (.not. deck%card%has('UNITS')) return
+      ! "length stress power temperature time", the last three of which may be left out.
       rest = trim(adjustl(deck%card%text('UNITS')))
       words = ''
       do i = 1, size(words)
@@ -121,7 +116,7 @@ contains
       deck%model%units%power = trim(words(3))
       deck%model%units%temperature = trim(words(4))
       deck%model%units%time = trim(words(5))
-   end subroutine build_units
+   end subroutine build_option_card
 
    !> Reads LEVELS= of *REFINE; 0 after an error.
    subroutine take_levels(deck, levels)

@@ -37,10 +37,9 @@ contains
       type(set_type), allocatable :: sets(:)
       type(draft_type) :: draft
       character(:), allocatable :: parameter, definer
-      integer :: count, first(2), i, j, k, kind
+      integer :: count, first(2), i, j, k, kind, n
 
-      parameter = merge('NSET ', 'ELSET', noun == 'node')
-      parameter = trim(parameter)
+      parameter = trim(merge('NSET ', 'ELSET', noun == 'node'))
       definer = to_upper(noun)
       allocate(draft%items(size(deck%cards%keywords)), draft%members(size(deck%cards%keywords)))
       draft%numbers = deck%node_index
@@ -72,26 +71,18 @@ contains
       if (noun == 'node') then
          call move_alloc(sets, deck%mesh%node_sets)
       else
-         call split_line_sets(size(deck%mesh%element_number), sets, deck%line_sets)
+         ! The elements stay, the lines, whose indexes are behind theirs, are kept beside them.
+         n = size(deck%mesh%element_number)
+         allocate (deck%line_sets(size(sets)))
+         do i = 1, size(sets)
+            deck%line_sets(i)%members = pack(sets(i)%members, sets(i)%members > n) - n
+            if (size(deck%line_sets(i)%members) == 0) cycle
+            sets(i)%members = pack(sets(i)%members, sets(i)%members <= n)
+            sets(i)%of_lines = size(sets(i)%members) == 0
+         end do
          call move_alloc(sets, deck%mesh%element_sets)
       end if
    end subroutine build_sets
-
-   !> Parts sets of elements and lines: the elements stay, the lines are kept beside them.
-   subroutine split_line_sets(elements, sets, line_sets)
-      integer, intent(in) :: elements                             ! number of elements
-      type(set_type), intent(inout) :: sets(:)  ! members are elements and, behind them, lines
-      type(set_type), allocatable, intent(out) :: line_sets(:)    ! indexes of lines; may be empty
-      integer :: i
-
-      allocate (line_sets(size(sets)))
-      do i = 1, size(sets)
-         line_sets(i)%members = pack(sets(i)%members, sets(i)%members > elements) - elements
-         if (size(line_sets(i)%members) == 0) cycle
-         sets(i)%members = pack(sets(i)%members, sets(i)%members <= elements)
-         sets(i)%of_lines = size(sets(i)%members) == 0
-      end do
-   end subroutine split_line_sets
 
    !> The nodes that a *NODE card gives, of which some may be given again elsewhere.
    function nodes_of(card, numbers) result(nodes)

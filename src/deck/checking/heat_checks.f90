@@ -279,7 +279,7 @@ contains
    !> Warns of constants in other units than the deck says, and of temperatures below absolute zero.
    subroutine check_units(deck)
       type(deck_type), intent(inout) :: deck
-      real(dp) :: constant, degree, metre, pascal, watt
+      real(dp) :: constant, degree, metre, pascal, ratio, watt
       integer :: k, m
 
       degree = size_of(scale_label(deck%model%units%temperature), temperatures)
@@ -311,31 +311,21 @@ contains
             if (min(degree, metre) > 0.0_dp .and. any(solves_heat( &
                deck%model%steps%analysis))) call check_property(m, watt/(metre*degree), deck)
          case ('LATENT HEAT')
-            call check_latent_heat(m, degree, deck)
+            if (m == 0 .or. degree <= 0.0_dp) cycle
+            associate (material => deck%model%materials(m))
+               if (.not. allocated(material%melting)) cycle
+               ratio = degree*sum(material%melting%content)/heat_capacity(material)
+               if (ratio < latent_ratios(1) .or. ratio > latent_ratios(2)) call deck%warning( &
+                  deck%card%place, 'the latent heat of '//material%name//' is '//to_text(ratio)// &
+                  ' K times its specific heat, beyond the '//to_text(latent_ratios(1))//' to '// &
+                  to_text(latent_ratios(2))//' K of solids; give it in the units of *SPECIFIC '// &
+                  'HEAT, such as J/kg, not kJ/kg')
+            end associate
          case default
             cycle
          end select
       end do
    end subroutine check_units
-
-   !> Warns of a latent heat that is none of a solid beside its specific heat.
-   subroutine check_latent_heat(m, degree, deck)
-      integer, intent(in) :: m                            ! index of its material, or 0
-      real(dp), intent(in) :: degree                      ! [K], 0 where not known
-      type(deck_type), intent(inout) :: deck
-      real(dp) :: ratio
-
-      if (m == 0 .or. degree <= 0.0_dp) return
-      associate (material => deck%model%materials(m))
-         if (.not. allocated(material%melting)) return
-         ratio = degree*sum(material%melting%content)/heat_capacity(material)
-         if (ratio < latent_ratios(1) .or. ratio > latent_ratios(2)) call deck%warning( &
-            deck%card%place, 'the latent heat of '//material%name//' is '//to_text(ratio)//' K '// &
-            'times its specific heat, beyond the '//to_text(latent_ratios(1))//' to '//to_text( &
-            latent_ratios(2))//' K of solids; give it in the units of *SPECIFIC HEAT, such as '// &
-            'J/kg, not kJ/kg')
-      end associate
-   end subroutine check_latent_heat
 
    !> Warns of a property whose first constant is none of a solid.
    subroutine check_property(m, unit, deck)
