@@ -7,7 +7,7 @@ module deck_builder_bars
    use element_types, only: axial_spring, drawn_line, ground_spring, truss
    use equations, only: fill_equation
    use kinds, only: dp
-   use materials, only: follows_temperature, isotropic, material_type, of_elasticity, of_expansion
+   use materials, only: follows_temperature, isotropic, of_elasticity, of_expansion
    use steps, only: dof_temperature
    use text, only: to_text
    use transforms, only: axis_in_plane
@@ -107,6 +107,7 @@ contains
       type(bar_type), intent(inout) :: of_line(:)
       integer, allocatable :: members(:)
       integer :: i, set
+      logical :: is_plain
 
       if (deck%has_errors()) return
       call deck%need_named('ELSET', 'element set', set)
@@ -115,7 +116,11 @@ contains
       if (size(members) == 0) return
       associate (material => deck%model%materials(deck%model%sections(n)%material), area => &
          deck%model%sections(n)%thickness)
-         if (.not. is_plain(material)) then
+         is_plain = material%has(of_elasticity) .and. .not. follows_temperature(material)
+         if (allocated(material%given)) is_plain = is_plain .and. all([( &
+            material%given(i)%symmetry == isotropic .and. (material%given(i)%kind /= &
+            of_expansion .or. size(material%given(i)%values, 1) == 1), i=1, size(material%given))])
+         if (.not. is_plain) then
             call deck%error(deck%card%place_of('MATERIAL'), 'trusses need *ELASTIC, isotropic, '// &
                'and properties that are constant')
             return
@@ -153,19 +158,6 @@ contains
       call fill_equation([nodes(1), nodes(1), nodes(2), nodes(2)], [1, 2, 1, 2], &
          [-along, along], bar%elongation)
    end subroutine set_axial
-
-   !> Whether a material is isotropic and does not follow the temperature.
-   pure logical function is_plain(material)
-      type(material_type), intent(in) :: material
-      integer :: i
-
-      is_plain = material%has(of_elasticity) .and. .not. follows_temperature(material)
-      if (.not. allocated(material%given)) return
-      do i = 1, size(material%given)
-         is_plain = is_plain .and. material%given(i)%symmetry == isotropic .and. &
-            (material%given(i)%kind /= of_expansion .or. size(material%given(i)%values, 1) == 1)
-      end do
-   end function is_plain
 
    pure real(dp) function youngs_modulus(elasticity) result(modulus)
       real(dp), intent(in) :: elasticity(4, 4)         !! [stress]

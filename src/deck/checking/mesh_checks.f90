@@ -323,15 +323,21 @@ contains
    !> No side of an element is far shorter than others; corners in one place go by the Jacobian.
    subroutine check_slenderness(deck)
       type(deck_type), intent(inout) :: deck
-      real(dp) :: least, ratio
-      integer :: e, worst, count_doubtful
+      real(dp) :: corners(2, 4), least, lengths(4), ratio
+      integer :: e, n, worst, count_doubtful
 
       worst = 0
       count_doubtful = 0
       least = doubtful
       do e = 1, size(deck%mesh%element_number)
          if (.not. deck%element_valid(e)) cycle
-         ratio = side_ratio(deck%mesh, e)
+         ! Of corners alone; sides without a length do not count.
+         n = element_corner_count(deck%mesh%element_kind(e))
+         corners(:, :n) = deck%mesh%coordinates(:, deck%mesh%element_nodes(:n, e))
+         lengths(:n) = norm2(cshift(corners(:, :n), 1, dim=2) - corners(:, :n), dim=1)
+         ratio = 1.0_dp
+         if (any(lengths(:n) > 0.0_dp)) ratio = minval(lengths(:n), mask=lengths(:n) > 0.0_dp)/ &
+            maxval(lengths(:n))
          if (ratio < hopeless) call deck%error(deck%element_place(e), said(deck%mesh, e, ratio)// &
             ', and rounding would spoil the result')
          if (ratio < hopeless .or. ratio >= doubtful) cycle
@@ -343,23 +349,6 @@ contains
          ', and pressures there are accurate to '//to_text(epsilon(1.0_dp)/least**2)//' only '// &
          '(number of such elements: '//to_text(count_doubtful)//')')
    end subroutine check_slenderness
-
-   !> The shortest side that has a length, over the longest; of corners alone.
-   pure real(dp) function side_ratio(mesh, e)
-      type(mesh_type), intent(in) :: mesh
-      integer, intent(in) :: e
-      real(dp) :: lengths(4)
-      integer :: i, n
-
-      n = element_corner_count(mesh%element_kind(e))
-      do i = 1, n
-         lengths(i) = norm2(mesh%coordinates(:, mesh%element_nodes(1 + mod(i, n), e)) - &
-            mesh%coordinates(:, mesh%element_nodes(i, e)))
-      end do
-      side_ratio = 1.0_dp
-      if (any(lengths(:n) > 0.0_dp)) side_ratio = minval(lengths(:n), mask=lengths(:n) > 0.0_dp)/ &
-         maxval(lengths(:n))
-   end function side_ratio
 
    !> The part of a message that names an element and the ratio of its sides.
    pure function said(mesh, e, ratio) result(words)

@@ -107,13 +107,6 @@ contains
       call report%possible_cause(place_type(image, position), 'this character is '//words)
    end subroutine suspect_look_alike
 
-   pure integer function filled(fields)
-      type(field_type), intent(in) :: fields(:)
-      integer :: i
-
-      filled = count([(len(fields(i)%text) > 0, i=1, size(fields))])
-   end function filled
-
    !> Ends a card that waits for its continuation, which a keyword card need not have.
    subroutine finish(self, cards, report)
       class(card_lines_type), intent(inout) :: self        !! what is open
@@ -258,7 +251,9 @@ contains
       end if
    end subroutine take_data_line
 
-   !> A line of elements, which may go on with the element before it or on the next line.
+   !> A line of elements, which may go on on the next line, or with the element before it: where
+   !> that ends in a comma, a slip where the line is a whole element, or where the line has just the
+   !> nodes that it lacks, as in CalculiX.
    subroutine take_element(self, fields, image, cards, report)
       type(card_lines_type), intent(inout) :: self
       type(field_type), allocatable, intent(inout) :: fields(:)
@@ -267,9 +262,21 @@ contains
       type(deck_report_type), intent(inout) :: report
       type(field_type), allocatable :: before(:)
       type(field_type) :: last
-      integer :: i
+      logical :: continues
+      integer :: filled, i, so_far
 
-      if (continues_element(self, fields, cards)) then
+      filled = count([(len(fields(i)%text) > 0, i=1, size(fields))])
+      so_far = 0
+      if (allocated(self%comma)) then
+         continues = self%element_fields == 0 .or. filled /= self%element_fields
+      else
+         associate (card => cards%keywords(cards%keyword_count))
+            if (card%data_count > 0) so_far = size(card%data(card%data_count)%fields)
+         end associate
+         continues = so_far > 0 .and. so_far < self%element_fields .and. &
+            so_far + filled == self%element_fields
+      end if
+      if (continues) then
          call take_last(cards, before)
          fields = [before, pack(fields, [(len(fields(i)%text) > 0 .or. i == size(fields), &
             i=1, size(fields))])]
@@ -282,26 +289,6 @@ contains
          self%element_fields, most_fields, self%element_fields > 0)) self%comma = last
       call take_data(self, fields, image, cards, report)
    end subroutine take_element
-
-   !> Whether a line goes on with the element before it: this one ends in a comma, which is a slip
-   !> where the line is a whole element; or the line has just the nodes that it lacks, as in
-   !> CalculiX.
-   pure logical function continues_element(self, fields, cards)
-      type(card_lines_type), intent(in) :: self
-      type(field_type), intent(in) :: fields(:)
-      type(cards_type), intent(in) :: cards
-      integer :: before
-
-      continues_element = allocated(self%comma) .and. (self%element_fields == 0 .or. &
-         filled(fields) /= self%element_fields)
-      if (allocated(self%comma)) return
-      associate (card => cards%keywords(cards%keyword_count))
-         if (card%data_count == 0) return
-         before = size(card%data(card%data_count)%fields)
-      end associate
-      continues_element = before < self%element_fields .and. &
-         before + filled(fields) == self%element_fields
-   end function continues_element
 
    subroutine take_data(self, fields, image, cards, report)
       type(card_lines_type), intent(inout) :: self

@@ -310,13 +310,30 @@ contains
       integer, allocatable :: numbers(:)
       type(motion_type) :: motion
       real(dp), allocatable :: x(:, :)
-      integer :: change, errors, i
+      real(dp) :: points(6)
+      integer :: change, errors, i, times
       logical, allocatable :: is_there(:)
+      logical :: valid
 
       errors = all%report%error_count()
       call take_old_set(card, 'NSET', all%nodes, all, numbers)
       call need_shift(card, 'CHANGE NUMBER', all, change)
-      call read_copy(card, all, motion)
+      if (.not. card%has('REFLECT')) then
+         if (card%lacks('SHIFT')) call all%report%error(card%place, '*NCOPY needs SHIFT or '// &
+            'REFLECT=LINE')
+         times = 1
+         call take_parameter(card, 'MULTIPLE', all%report, times, '>=1')
+         call read_motion(card%data, times, all%report, motion)
+      else if (choice(card, 'REFLECT', 'LINE', all%report, '') == 'LINE') then
+         call read_row(card%data(1), axis_layout, all%report, points, valid)
+         associate (along => points(4:5) - points(1:2))
+            if (valid .and. norm2(along) <= 0.0_dp) call all%report%error( &
+               card%data(1)%place(1), 'the two points of the line coincide')
+            motion%turn = rotation(2*atan2(along(2), along(1)))
+         end associate
+         motion%turn(:, 2) = -motion%turn(:, 2)
+         motion%shift = points(1:2) - matmul(motion%turn, points(1:2))
+      end if
       if (card%flawed .or. all%report%error_count() > errors) then
          call all%report%lose('node')
          return
@@ -338,32 +355,6 @@ contains
       call add_copies_card(card, 'NSET', 'NSET', '', all)
       call add_numbers(card%data(1), pack(numbers + change, is_there), all)
    end subroutine copy_nodes
-
-   subroutine read_copy(card, all, motion)
-      type(keyword_card_type), intent(in) :: card
-      type(growing_cards_type), intent(in) :: all
-      type(motion_type), intent(out) :: motion
-      real(dp) :: points(6)
-      integer :: times
-      logical :: valid
-
-      if (.not. card%has('REFLECT')) then
-         if (card%lacks('SHIFT')) call all%report%error(card%place, '*NCOPY needs SHIFT or '// &
-            'REFLECT=LINE')
-         times = 1
-         call take_parameter(card, 'MULTIPLE', all%report, times, '>=1')
-         call read_motion(card%data, times, all%report, motion)
-      else if (choice(card, 'REFLECT', 'LINE', all%report, '') == 'LINE') then
-         call read_row(card%data(1), axis_layout, all%report, points, valid)
-         associate (along => points(4:5) - points(1:2))
-            if (valid .and. norm2(along) <= 0.0_dp) call all%report%error( &
-               card%data(1)%place(1), 'the two points of the line coincide')
-            motion%turn = rotation(2*atan2(along(2), along(1)))
-         end associate
-         motion%turn(:, 2) = -motion%turn(:, 2)
-         motion%shift = points(1:2) - matmul(motion%turn, points(1:2))
-      end if
-   end subroutine read_copy
 
    !> *ELCOPY: copies of the elements of a set; with REFLECT their nodes go round the other way.
    subroutine copy_elements(card, all)
