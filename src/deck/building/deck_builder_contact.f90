@@ -37,8 +37,8 @@ contains
          call deck%open_card(places(k))
          call read_parameters(deck, contact)
          do i = 1, size(deck%card%data)
-            if (is_pattern(deck%card%data(i)%text(1)) .or. is_pattern(deck%card%data(i)%text( &
-               2))) then
+            if (is_pattern(deck%card%data(i)%text(1)) .or. is_pattern( &
+               deck%card%data(i)%text(2))) then
                call add_matching(deck%card%data(i), contact, deck)
             else
                call read_faces(deck%card%data(i), deck, contact)

@@ -396,8 +396,8 @@ contains
             ! A gap that is not known is 0.
             if (abs(temperature(i) - temperature(i - 1)) > 0.0_dp .or. .not. (valid .or. &
                table%abscissa(i) > 0.0_dp)) cycle
-            if (table%abscissa(i) <= table%abscissa(i - 1)) call deck%error(deck%card%data( &
-               i)%place(2), noun//'s must ascend')
+            if (table%abscissa(i) <= table%abscissa(i - 1)) call deck%error( &
+               deck%card%data(i)%place(2), noun//'s must ascend')
          end do
          if (all(temperature <= temperature(1)) .or. .not. valid) then
             table%columns = reshape(table%omega, [size(table%omega), 1])
@@ -406,10 +406,10 @@ contains
          do i = 1, size(temperature)
             ! Between temperatures at which it ends at other gaps, a table would end at none.
             if (noun /= 'gap' .or. any(temperature(i + 1:) <= temperature(i))) cycle
-            if (abs(table%abscissa(i) - maxval(table%abscissa, mask=temperature <= temperature( &
-               1))) > 0.0_dp) call deck%error(deck%card%data(i)%place(2), 'the table ends at a '// &
-               'different gap than at the first temperature; no heat crosses beyond the end, '// &
-               'which must be the same at all temperatures')
+            if (abs(table%abscissa(i) - maxval(table%abscissa, mask=temperature <= &
+               temperature(1))) > 0.0_dp) call deck%error(deck%card%data(i)%place(2), 'the '// &
+               'table ends at a different gap than at the first temperature; no heat crosses '// &
+               'beyond the end, which must be the same at all temperatures')
          end do
          ! One column for each temperature, with the conductance at all gaps or pressures.
          grid = ascending(table%abscissa)

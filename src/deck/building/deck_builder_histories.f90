@@ -94,9 +94,9 @@ contains
                valid = .true.
                if (deck%card%has('GENERATE')) then
                   call read_row(deck%card%data(j), 'start/end/interval', deck, values, valid)
-                  if (valid .and. .not. (values(3) > 0.0_dp .and. values(2) >= values( &
-                     1))) call deck%error(deck%card%data(j)%place(3), 'time points go up from '// &
-                     'the start to the end by a positive interval')
+                  if (valid .and. .not. (values(3) > 0.0_dp .and. values(2) >= &
+                     values(1))) call deck%error(deck%card%data(j)%place(3), 'time points go '// &
+                     'up from the start to the end by a positive interval')
                   if (valid .and. values(3) > 0.0_dp) points%times = [points%times, (values(1) + &
                      i*values(3), i=0, floor((values(2) - values(1))/values(3) + 1.0e-6_dp))]
                end if
@@ -148,8 +148,8 @@ contains
             call read_field(deck%card%data(j), i, 'time', deck, amplitude%times(n), valid)
             call read_field(deck%card%data(j), i + 1, 'value', deck, amplitude%values(n), valid)
             if (n < 2 .or. .not. valid) cycle
-            if (amplitude%times(n) <= amplitude%times(n - 1)) call deck%error(deck%card%data( &
-               j)%place(i), 'times must ascend')
+            if (amplitude%times(n) <= amplitude%times(n - 1)) call deck%error( &
+               deck%card%data(j)%place(i), 'times must ascend')
          end do
          i = decimal_comma(deck%card%data(j))
          if (deck%error_count() == errors .or. i == 0) cycle

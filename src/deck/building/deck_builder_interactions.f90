@@ -157,9 +157,9 @@ contains
       if (.not. valid) return
       call check_ascending(deck%card%data, 3, 'temperatures', values(3, :), deck)
       do k = 2, size(deck%card%data)
-         if (abs(values(2, k) - values(2, 1)) > 0.0_dp) call deck%error(deck%card%data(k)%place( &
-            2), 'the share of the slave is one number for all temperatures; repeat that of the '// &
-            'first row')
+         if (abs(values(2, k) - values(2, 1)) > 0.0_dp) call deck%error( &
+            deck%card%data(k)%place(2), 'the share of the slave is one number for all '// &
+            'temperatures; repeat that of the first row')
       end do
       wear%rate = values(1, :)
       wear%temperature = values(3, :)

@@ -68,13 +68,13 @@ contains
       ! rotation of each coupling and rigid body.
       do k = 1, merge(size(deck%cards%keywords), 0, n > 0)
          call deck%open_card(k)
-         if (deck%card%name == 'SOLID SECTION' .and. deck%card%has('REF NODE')) call add_unnamed( &
-            deck)
+         if (deck%card%name == 'SOLID SECTION' .and. &
+            deck%card%has('REF NODE')) call add_unnamed(deck)
       end do
       do k = 1, merge(size(deck%cards%keywords), 0, n > 0)
          call deck%open_card(k)
-         if (any(deck%card%name == [character(10) :: 'COUPLING', 'RIGID BODY'])) call add_unnamed( &
-            deck)
+         if (any(deck%card%name == [character(10) :: 'COUPLING', &
+            'RIGID BODY'])) call add_unnamed(deck)
       end do
    end subroutine build_nodes
 

@@ -68,8 +68,8 @@ contains
          end do
       end do
       deck%mesh%surfaces(surface)%faces = reshape(found%numbers(), [2, found%count/2])
-      deck%face_places(surface)%items = spread(deck%card%place, 1, size(deck%mesh%surfaces( &
-         surface)%faces, 2))
+      deck%face_places(surface)%items = spread(deck%card%place, 1, size( &
+         deck%mesh%surfaces(surface)%faces, 2))
       e = findloc(named .and. .not. taken(1:), .true., dim=1)
       if (e > 0) call deck%error(deck%card%data(1)%place(1), 'node '//to_text( &
          deck%mesh%node_number(e))//' of surface '//deck%mesh%surfaces(surface)%name//' is on '// &

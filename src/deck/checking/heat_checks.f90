@@ -345,10 +345,11 @@ contains
             value = maxval(material%given(i)%values(1, :))
             if (value*unit <= ends(2)) value = minval(material%given(i)%values(1, :))
             if (value*unit >= ends(1) .and. value*unit <= ends(2)) cycle
-            call deck%warning(deck%card%place, trim(material%given(i)%names(1))//' '//to_text( &
-               value)//' of '//material%name//' is '//to_text(value*unit)//' '//si_unit//' in '// &
-               'the units of *OPTIONS, UNITS=, beyond the '//to_text(ends(1))//' to '//to_text( &
-               ends(2))//' '//si_unit//' of solids; give it in those units, or correct UNITS=')
+            call deck%warning(deck%card%place, trim(material%given(i)%names(1))//' '// &
+               to_text(value)//' of '//material%name//' is '//to_text(value*unit)//' '//si_unit// &
+               ' in the units of *OPTIONS, UNITS=, beyond the '//to_text(ends(1))//' to '// &
+               to_text(ends(2))//' '//si_unit//' of solids; give it in those units, or correct '// &
+               'UNITS=')
          end do
       end associate
    end subroutine check_property

@@ -296,8 +296,8 @@ contains
          if (index(fields(i)%text, '"') > 0) fields(i)%text = without_quotes(fields(i)%text)
       end do
       if (self%keyword == 'PARAMETER') return
-      call add_data(self%cards, fields, place_type(image, last_text(self%report%source%images( &
-         image)%value) + 1))
+      call add_data(self%cards, fields, place_type(image, last_text( &
+         self%report%source%images(image)%value) + 1))
    end subroutine take_data
 
 end module card_lines
