@@ -13,7 +13,7 @@ module deck_builder_mesh
    use element_types, only: drawn_line, line_kind, line_node_count, take_element_type
    use kinds, only: dp
    use mesh, only: add_node, extent_of, nodes_per_element
-   use sorting, only: repeated
+   use sorting, only: repeated, sort_order
    use text, only: to_text, to_upper
    implicit none
    private
@@ -35,6 +35,7 @@ contains
    subroutine build_nodes(deck)
       type(deck_type), intent(inout) :: deck
       real(dp), allocatable :: heights(:)
+      real(dp) :: place(2)
       integer, allocatable :: places(:)
       integer :: j, k, n
       logical :: told
@@ -66,27 +67,18 @@ contains
       call deck%node_index%build(deck%mesh%node_number)
       ! Nodes that no card can name: for the turn about y of the REF NODE of a section, then for the
       ! rotation of each coupling and rigid body.
-      do k = 1, merge(size(deck%cards%keywords), 0, n > 0)
-         call deck%open_card(k)
-         if (deck%card%name == 'SOLID SECTION' .and. &
-            deck%card%has('REF NODE')) call add_unnamed(deck)
-      end do
-      do k = 1, merge(size(deck%cards%keywords), 0, n > 0)
-         call deck%open_card(k)
-         if (any(deck%card%name == [character(10) :: 'COUPLING', &
-            'RIGID BODY'])) call add_unnamed(deck)
+      if (n == 0) return
+      place = deck%mesh%coordinates(:, 1)
+      places = [cards_of(deck%cards, 'COUPLING'), cards_of(deck%cards, 'RIGID BODY')]
+      places = [cards_of(deck%cards, 'SOLID SECTION'), places(sort_order(places))]
+      do k = 1, size(places)
+         call deck%open_card(places(k))
+         if (deck%card%name == 'SOLID SECTION' .and. .not. deck%card%has('REF NODE')) cycle
+         call add_node(deck%mesh, place)
+         deck%node_place = [deck%node_place, deck%card%place]
+         deck%node_valid = [deck%node_valid, .true.]
       end do
    end subroutine build_nodes
-
-   subroutine add_unnamed(deck)
-      type(deck_type), intent(inout) :: deck
-      real(dp) :: place(2)
-
-      place = deck%mesh%coordinates(:, 1)
-      call add_node(deck%mesh, place)
-      deck%node_place = [deck%node_place, deck%card%place]
-      deck%node_valid = [deck%node_valid, .true.]
-   end subroutine add_unnamed
 
    !> Of a node that is given more than once the last place counts, as in Abaqus and CalculiX.
    subroutine drop_repeated(deck)

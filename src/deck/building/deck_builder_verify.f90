@@ -47,7 +47,8 @@ contains
                check%kind = kind
                check%source = deck%card%text('SOURCE')
                check%line = data%end%image
-               check%address = deck%source%address_of(data%end)
+               check%address = deck%source%paths(deck%source%file(check%line))%value//':'// &
+                  to_text(deck%source%line(check%line))
                check%quantity = ''
                check%where = data%text(2)
                fields = [data%place(1), data%place(2)]

@@ -9,9 +9,9 @@ module card_values
       string_type, to_text, to_upper, without_blanks
    implicit none
    private
-   public :: read_field, check_extra, read_row, read_rows, check_ascending, plane_vector, &
-      decimal_comma, decimal_comma_words, report_decimal_comma, may_be_decimals, check_unneeded, &
-      surface_kinds, need_parameter, take_parameter, choice, chosen, needed_choice, is_on
+   public :: read_field, check_extra, read_row, read_rows, check_ascending, decimal_comma, &
+      decimal_comma_words, report_decimal_comma, may_be_decimals, check_unneeded, surface_kinds, &
+      need_parameter, take_parameter, choice, chosen, needed_choice, is_on
 
    !> Value of a field by its rule, as in a layout of read_row; it stays as it is where the card
    !> does not have it, and after an error. A text must be there.
@@ -226,24 +226,6 @@ contains
       rule%is_text = field(1:1) == '@'
       rule%name = [merge(2, 1, rule%is_whole .or. rule%is_text), last]
    end function rule_of
-
-   !> A vector of the plane by its magnitude and the components of its direction.
-   subroutine plane_vector(data, first, given, report, vector)
-      type(data_card_type), intent(in) :: data
-      integer, intent(in) :: first                         !! position of the magnitude
-      real(dp), intent(in) :: given(4)                     !! magnitude, direction x, y and z
-      class(deck_report_type), intent(inout) :: report     !! receives errors
-      real(dp), intent(out) :: vector(2)                   !! x and y, zero after an error
-
-      vector = 0.0_dp
-      if (abs(given(4)) > 0.0_dp) then
-         call report%error(data%place(first + 3), 'the direction lies in the plane: z must be 0')
-      else if (norm2(given(2:3)) <= 0.0_dp) then
-         call report%error(data%place(first + 1), 'the direction is zero')
-      else
-         vector = given(1)*given(2:3)/norm2(given(2:3))
-      end if
-   end subroutine plane_vector
 
    !> Position of the first field whose decimals, be they 0, the next one may be: the comma has no
    !> blank behind it, and other commas of the card have one, or no field of the card has a point. 0

@@ -29,7 +29,6 @@ module deck_source
    contains
       procedure :: add_image
       procedure :: words_of
-      procedure :: address_of
    end type deck_source_type
 
 contains
@@ -71,15 +70,6 @@ contains
       if (self%file(place%image) > 1) words = words//' of '// &
          self%paths(self%file(place%image))%value
    end function words_of
-
-   !> A place as messages begin, such as 'deck.inp:12'.
-   pure function address_of(self, place) result(address)
-      class(deck_source_type), intent(in) :: self
-      type(place_type), intent(in) :: place           !! with an image
-      character(:), allocatable :: address
-
-      address = self%paths(self%file(place%image))%value//':'//to_text(self%line(place%image))
-   end function address_of
 
    !> The lines of a text file in UTF-8, with ends of line in the manner of Unix or Windows.
    subroutine read_lines(path, lines, fault)
