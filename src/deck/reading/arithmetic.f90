@@ -25,7 +25,8 @@ module arithmetic
    !> An expression while it is read.
    type :: reader_type
       character(:), allocatable :: text
-      type(string_type), allocatable :: names(:), values(:)   !! (parameters)
+      type(name_index_type) :: parameters                 !! those before
+      type(string_type), allocatable :: values(:)         !! (parameters)
       integer :: at = 1                      !! the byte that is read next
       integer :: depth = 0
       type(arithmetic_fault_type) :: fault   !! the first one; reading ends there
@@ -58,7 +59,7 @@ contains
       type(reader_type) :: self
 
       self%text = expression
-      self%names = parameters%known()
+      self%parameters = parameters
       self%values = values
       call read_terms(self, '+-', number)
       if (next(self) /= '') call fail(self, self%at, 'an operator is expected here'// &
@@ -182,13 +183,11 @@ contains
          call read_parentheses(self, number)
          call apply(self, place, to_upper(name), number)
       else
-         do k = size(self%names), 1, -1
-            if (self%names(k)%value == to_upper(name)) exit
-         end do
+         k = self%parameters%find(name)
          if (k == 0) then
             self%fault%unknown = to_upper(name)
             call fail(self, place, 'no *PARAMETER before this one defines '//to_upper(name)// &
-               nearest_known(to_upper(name), self%names))
+               nearest_known(to_upper(name), self%parameters%known()))
             return
          end if
          call read_real(self%values(k)%value, number, valid)

@@ -1,7 +1,6 @@
 !> Errors and warnings of a deck with their places, printed in one go.
 module deck_report
-   use card_echo, only: column_of, print_card, without_numbers
-   use deck_source, only: deck_source_type, place_type
+   use deck_source, only: column_of, print_card, without_numbers, deck_source_type, place_type
    use sorting, only: sort_order
    use messages, only: message_type, print_line
    use name_index, only: name_index_type
