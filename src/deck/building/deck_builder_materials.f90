@@ -55,8 +55,7 @@ contains
             call deck%lose('*DENSITY')
             call deck%lose('*SPECIFIC HEAT')
          case ('ELASTIC', 'EXPANSION', 'CONDUCTIVITY', 'DENSITY', 'SPECIFIC HEAT', 'LATENT HEAT', &
-            'PLASTIC', 'CYCLIC HARDENING', 'CREEP', 'INELASTIC HEAT FRACTION', &
-            'ANNEAL TEMPERATURE')
+            'PLASTIC', 'CYCLIC HARDENING', 'CREEP', 'INELASTIC HEAT FRACTION', 'ANNEAL TEMPERATURE')
             if (n == 0) then
                if (len(deck%card%meant) == 0) call deck%missing(deck%card%place, '*'// &
                   deck%card%name//' has no *MATERIAL before it')

@@ -379,11 +379,9 @@ contains
       associate (nodes => deck%line_nodes(:, members(bad)))
          if (any(nodes(:2) == 0)) return
          i = findloc(nodes > 0, .true., dim=1, back=.true.)
-         if (all(deck%mesh%element_nodes /= nodes(1) .and. deck%mesh%element_nodes /= nodes(2))) &
-            then
-            fault = fault//', nor do its nodes: its curve is the side of no surface in the '// &
-               'drawing, such as a second one at the place of one that is; take that one'
-         end if
+         if (all(deck%mesh%element_nodes /= nodes(1) .and. deck%mesh%element_nodes /= &
+            nodes(2))) fault = fault//', nor do its nodes: its curve is the side of no surface '// &
+            'in the drawing, such as a second one at the place of one that is; take that one'
          call deck%error(data%place(1), 'line '//to_text(deck%line_number(members(bad)))//' '// &
             'from node '//to_text(deck%mesh%node_number(nodes(1)))//' to '// &
             to_text(deck%mesh%node_number(nodes(i)))//' '//fault)

@@ -114,9 +114,8 @@ contains
             max(1, deck%boundaries%items(i)%step))
       end do
       do i = 1, deck%loads%count
-         if (is_heat(deck%loads%items(i)%kind)) then
-            first_heat = min(first_heat, deck%loads%items(i)%step)
-         end if
+         if (is_heat(deck%loads%items(i)%kind)) first_heat = min(first_heat, &
+            deck%loads%items(i)%step)
       end do
    end function first_heat
 

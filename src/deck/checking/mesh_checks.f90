@@ -169,8 +169,7 @@ contains
    subroutine check_faces(deck, uses)
       type(deck_type), intent(inout) :: deck
       integer, intent(inout) :: uses(:, :)   !! (4, elements) elements that meet at each side
-      logical :: wrong(size(uses, 1), size(uses, 2))
-      logical :: is_cut(size(deck%mesh%surfaces))
+      logical :: wrong(size(uses, 1), size(uses, 2)), is_cut(size(deck%mesh%surfaces))
       logical, allocatable :: inside(:)
       integer, allocatable :: sections(:)
       integer :: i, s

@@ -5,13 +5,10 @@ module keywords
       without_blanks
    implicit none
    private
-   public :: keyword_type, known_keywords, find_keyword, known_names
-   public :: built, not_needed, refused
-   public :: in_model, in_step, in_both
-   public :: known_parameter_type, find_parameter, find_abbreviated, parameter_names, is_output
-   public :: advice_type, find_advice, word_advice, is_word
-   public :: no_advice, passed_over, not_printed, refused_with_data
-   public :: keyword_lines
+   public :: keyword_type, known_keywords, find_keyword, known_names, built, not_needed, refused, &
+      in_model, in_step, in_both, known_parameter_type, find_parameter, find_abbreviated, &
+      parameter_names, is_output, advice_type, find_advice, word_advice, is_word, no_advice, &
+      passed_over, not_printed, refused_with_data, keyword_lines
 
    integer, parameter :: built = 1        !! understood
    integer, parameter :: not_needed = 2   !! read, and means nothing to this program
