@@ -255,16 +255,16 @@ contains
       logical :: continues
       integer :: filled, i, so_far
 
-      filled = count([(len(fields(i)%text) > 0, i=1, size(fields))])
       so_far = 0
-      if (allocated(self%comma)) then
-         continues = self%element_fields == 0 .or. filled /= self%element_fields
-      else
+      if (.not. allocated(self%comma)) then
          associate (card => self%cards%keywords(self%cards%keyword_count))
             if (card%data_count > 0) so_far = size(card%data(card%data_count)%fields)
          end associate
-         continues = so_far > 0 .and. so_far < self%element_fields .and. &
-            so_far + filled == self%element_fields
+      end if
+      continues = allocated(self%comma) .or. (so_far > 0 .and. so_far < self%element_fields)
+      if (continues .and. self%element_fields > 0) then
+         filled = count([(len(fields(i)%text) > 0, i=1, size(fields))])
+         continues = allocated(self%comma) .neqv. so_far + filled == self%element_fields
       end if
       if (continues) then
          call take_last(self, before)
