@@ -2,7 +2,7 @@
 !> `--resume`, at the increment that *RESTART, READ or the command line says, or the last one kept.
 module deck_origins
    use, intrinsic :: iso_fortran_env, only: error_unit
-   use card_parameters, only: take_parameter
+   use card_values, only: take_parameter
    use cards, only: cards_type
    use command_line, only: command_type, settings_in_words
    use deck_files, only: results_of, row_file_of

@@ -41,7 +41,7 @@ PARTS = {
         "balances:contact_violation", "conductance_laws", "contact_operator:law_conductance",
         "contact_heat:temperature_jumps", "equilibrium_reduction:set_cycles",
         "equilibrium_reduction:set_motions", "deck_builder_contact",
-        "deck_builder_gap_conductance", "deck_builder_gap_laws", "deck_builder_interactions",
+        "deck_builder_gap_laws", "deck_builder_interactions",
         "increment_records:contact_record",
         "increment_solution:remember_slip", "increment_solution:conduct",
         "listing_increments:print_interface", "listing_tables:print_contact_table",

@@ -1,5 +1,4 @@
-!> Cards -> model. The cards are read by theme, so their order matters only where the dialect
-!> says so.
+!> Cards -> model. They are read by theme: their order matters only where the dialect says so.
 module deck_builder
    use materials, only: melts, of_expansion, of_specific_heat
    use mesh_bodies, only: find_bodies
@@ -10,8 +9,8 @@ module deck_builder
    use deck_builder_contact, only: build_contacts, build_ties
    use deck_builder_axes, only: build_orientations, build_transforms
    use deck_builder_bars, only: build_bars
-   use deck_builder_equations, only: build_couplings, build_equations
-   use deck_builder_gap_heat, only: check_friction_heat
+   use deck_builder_equations, only: build_couplings, build_equations, build_pre_tensions
+   use deck_builder_gap_laws, only: check_friction_heat
    use deck_builder_histories, only: build_amplitudes, build_initial_stresses, build_temperatures, &
       build_time_points
    use deck_builder_interactions, only: build_interactions
@@ -19,14 +18,13 @@ module deck_builder
    use deck_builder_mesh, only: build_elements, build_nodes
    use deck_builder_node_surfaces, only: build_node_surfaces
    use deck_builder_options, only: build_load_axis, build_options, build_regions
-   use deck_builder_sections, only: build_pre_tensions
    use deck_builder_sets, only: build_sets, build_surfaces
    use deck_builder_steps, only: build_steps
    use deck_checks, only: check_model, check_usage
    use deck_context, only: deck_type
    use deck_report, only: deck_report_type, heatless
    use deck_structure, only: cards_of, check_structure
-   use heat_checks, only: check_heat_paths, check_starts
+   use heat_checks, only: check_heat_paths, check_starts, check_units
    use mesh_checks, only: check_folds
    use load_application, only: apply_requests, collect_fields, turn_equations
    use load_checks, only: check_amplitudes, first_heat
@@ -36,7 +34,6 @@ module deck_builder
    use steps, only: analysis_coupled, analysis_static, solves_heat, solves_mechanics
    use text, only: to_text
    use touch_checks, only: check_touches
-   use unit_checks, only: check_units
    implicit none
    private
    public :: build_model
@@ -176,9 +173,7 @@ contains
    subroutine note_defaults(deck)
       type(deck_type), intent(inout) :: deck
 
-      if (deck%temperatures%count == 0) then
-         call deck%note('no initial temperature is given: it is 0')
-      end if
+      if (deck%temperatures%count == 0) call deck%note('no initial temperature is given: it is 0')
       if (allocated(deck%mesh%initial_stress) .and. .not. &
          any(solves_mechanics(deck%model%steps%analysis))) then
          call deck%note('initial stresses are ignored: no step solves equilibrium')

@@ -1,8 +1,7 @@
 !> *TRANSFORM -> nodes with axes of their own; *ORIENTATION -> axes of materials.
 module deck_builder_axes
-   use card_parameters, only: choice
-   use card_values, only: read_row
-   use cards, only: data_card_type, keyword_card_type
+   use card_values, only: choice, read_row
+   use cards, only: data_card_type
    use deck_context, only: deck_type
    use deck_structure, only: cards_of
    use kinds, only: dp
@@ -27,13 +26,14 @@ contains
       places = cards_of(deck%cards, 'TRANSFORM')
       allocate (deck%model%transforms(size(places)))
       do n = 1, size(places)
-         associate (card => deck%cards%keywords(places(n)), transform => deck%model%transforms(n))
-            transform%title = '*TRANSFORM, '//deck%source%words_of(card%place)
-            transform%card = card%place%image
-            call deck%need_named(card, 'NSET', 'node set', transform%set)
-            transform%cylindrical = choice(card, 'TYPE', 'R/C', deck, 'R') == 'C'
-            if (size(card%data) > 0) call read_axes(card%data(1), deck, transform)
-            call check_nodes(card, n, deck)
+         call deck%open_card(places(n))
+         associate (transform => deck%model%transforms(n))
+            transform%title = '*TRANSFORM, '//deck%source%words_of(deck%card%place)
+            transform%card = deck%card%place%image
+            call deck%need_named('NSET', 'node set', transform%set)
+            transform%cylindrical = choice(deck%card, 'TYPE', 'R/C', deck, 'R') == 'C'
+            if (size(deck%card%data) > 0) call read_axes(deck%card%data(1), deck, transform)
+            call check_nodes(n, deck)
          end associate
       end do
    end subroutine build_transforms
@@ -50,25 +50,25 @@ contains
       places = cards_of(deck%cards, 'ORIENTATION')
       allocate (deck%model%orientations(size(places)))
       do n = 1, size(places)
-         call deck%take_name(places(n), 'orientation', deck%model%orientations(n)%name)
-         associate (card => deck%cards%keywords(places(n)), given_axes => &
-            deck%model%orientations(n))
-            if (size(card%data) == 0) cycle
+         call deck%open_card(places(n))
+         call deck%take_name('orientation', deck%model%orientations(n)%name)
+         associate (given_axes => deck%model%orientations(n))
+            if (size(deck%card%data) == 0) cycle
             axes = transform_type()
-            axes%cylindrical = choice(card, 'SYSTEM', 'RECTANGULAR/CYLINDRICAL', deck, &
+            axes%cylindrical = choice(deck%card, 'SYSTEM', 'RECTANGULAR/CYLINDRICAL', deck, &
                'RECTANGULAR') == 'CYLINDRICAL'
-            call read_axes(card%data(1), deck, axes)
-            if (axes%out_of_plane /= 3) call deck%error(card%data(1)%place(1), 'axes 1 and 2 '// &
-               'of an orientation lie in the plane: the z components of a and b must be 0')
+            call read_axes(deck%card%data(1), deck, axes)
+            if (axes%out_of_plane /= 3) call deck%error(deck%card%data(1)%place(1), 'axes 1 '// &
+               'and 2 of an orientation lie in the plane: the z components of a and b must be 0')
             given_axes%cylindrical = axes%cylindrical
             given_axes%orientation_sign = axes%sense
             if (axes%cylindrical) given_axes%centre = axes%point
             if (.not. axes%cylindrical) given_axes%direction = axes%point
-            if (size(card%data) == 1) cycle
+            if (size(deck%card%data) == 1) cycle
             ! A turn round axis 3, from axis 1 towards axis 2.
-            call read_row(card%data(2), '#axis/angle in degrees?', deck, given, valid)
-            if (valid .and. nint(given(1)) /= 3) call deck%error(card%data(2)%place(1), 'a '// &
-               'turn about axis 1 or 2 leaves the plane: only axis 3')
+            call read_row(deck%card%data(2), '#axis/angle in degrees?', deck, given, valid)
+            if (valid .and. nint(given(1)) /= 3) call deck%error(deck%card%data(2)%place(1), &
+               'a turn about axis 1 or 2 leaves the plane: only axis 3')
             associate (first => given_axes%direction, angle => given(2)*degree)
                first = cos(angle)*first + sin(angle)*axes%sense*[-first(2), first(1)]
             end associate
@@ -82,7 +82,7 @@ contains
       type(data_card_type), intent(in) :: data
       type(deck_type), intent(inout) :: deck
       type(transform_type), intent(inout) :: axes          ! whether they are cylindrical is known
-      real(dp) :: given(6), x(3, 2)
+      real(dp) :: given(6), unit(3, 3), x(3, 2)
       logical :: valid
 
       call read_row(data, 'x of point a/y of point a/z of point a?/x of point b/y of point b/'// &
@@ -96,43 +96,34 @@ contains
          if (norm2(x(:2, 2)) > negligible*norm2(x(:, 2)) .or. norm2(x(:, 2)) <= 0.0_dp) call &
             deck%error(data%place(1), 'a cylindrical system of a plane is round an axis along '// &
             'z, such as 0., 0., 0., 0., 0., 1.')
-      else
-         call set_axes(x, axes, valid)
-         if (.not. valid) call deck%error(data%place(1), 'a rectangular system of a plane has '// &
-            'two points, not in line with the origin, that put one of the three axes along z, '// &
-            'such as 1., 1., 0., -1., 1., 0.')
+         return
       end if
+      valid = all(norm2(x, dim=1) > 0.0_dp)
+      if (valid) then
+         unit(:, 1) = x(:, 1)/norm2(x(:, 1))
+         unit(:, 2) = x(:, 2)/norm2(x(:, 2))
+         unit(:, 2) = unit(:, 2) - dot_product(unit(:, 1), unit(:, 2))*unit(:, 1)
+         valid = norm2(unit(:, 2)) > negligible
+      end if
+      if (valid) then
+         unit(:, 2) = unit(:, 2)/norm2(unit(:, 2))
+         unit(:, 3) = cshift(unit(:, 1), 1)*cshift(unit(:, 2), 2) - &
+            cshift(unit(:, 1), 2)*cshift(unit(:, 2), 1)
+         axes%out_of_plane = maxloc(abs(unit(3, :)), dim=1)
+         valid = norm2(unit(:2, axes%out_of_plane)) <= negligible
+         associate (first => unit(:2, merge(2, 1, axes%out_of_plane == 1)), &
+            second => unit(:2, merge(2, 3, axes%out_of_plane == 3)))
+            axes%point = first
+            axes%sense = sign(1.0_dp, first(1)*second(2) - first(2)*second(1))
+         end associate
+      end if
+      if (.not. valid) call deck%error(data%place(1), 'a rectangular system of a plane has two '// &
+         'points, not in line with the origin, that put one of the three axes along z, such as '// &
+         '1., 1., 0., -1., 1., 0.')
    end subroutine read_axes
 
-   !> The axes in the plane of two points. One of the three axes must be along z.
-   pure subroutine set_axes(x, transform, valid)
-      real(dp), intent(in) :: x(3, 2)
-      type(transform_type), intent(inout) :: transform
-      logical, intent(out) :: valid
-      real(dp) :: axes(3, 3)
-
-      valid = all(norm2(x, dim=1) > 0.0_dp)
-      if (.not. valid) return
-      axes(:, 1) = x(:, 1)/norm2(x(:, 1))
-      axes(:, 2) = x(:, 2)/norm2(x(:, 2))
-      axes(:, 2) = axes(:, 2) - dot_product(axes(:, 1), axes(:, 2))*axes(:, 1)
-      valid = norm2(axes(:, 2)) > negligible
-      if (.not. valid) return
-      axes(:, 2) = axes(:, 2)/norm2(axes(:, 2))
-      axes(:, 3) = cshift(axes(:, 1), 1)*cshift(axes(:, 2), 2) - &
-         cshift(axes(:, 1), 2)*cshift(axes(:, 2), 1)
-      transform%out_of_plane = maxloc(abs(axes(3, :)), dim=1)
-      valid = norm2(axes(:2, transform%out_of_plane)) <= negligible
-      associate (first => axes(:2, merge(2, 1, transform%out_of_plane == 1)), &
-         second => axes(:2, merge(2, 3, transform%out_of_plane == 3)))
-         transform%point = first
-         transform%sense = sign(1.0_dp, first(1)*second(2) - first(2)*second(1))
-      end associate
-   end subroutine set_axes
-
    !> A node has one transform, and is not on the axis of it.
-   subroutine check_nodes(card, n, deck)
-      type(keyword_card_type), intent(in) :: card
+   subroutine check_nodes(n, deck)
       integer, intent(in) :: n
       type(deck_type), intent(inout) :: deck
       integer :: i, k
@@ -145,15 +136,15 @@ contains
                if (deck%model%transforms(k)%set == 0) cycle
                if (all(deck%mesh%node_sets(deck%model%transforms(k)%set)%members /= &
                   members(i))) cycle
-               call deck%error(card%place_of('NSET'), 'node '//to_text(number(members(i)))//' '// &
-                  'has axes of its own by '//deck%model%transforms(k)%title//' already')
+               call deck%error(deck%card%place_of('NSET'), 'node '//to_text(number(members(i)))// &
+                  ' has axes of its own by '//deck%model%transforms(k)%title//' already')
                return
             end do
             if (.not. deck%model%transforms(n)%cylindrical) cycle
             if (norm2(x(:, members(i)) - deck%model%transforms(n)%point) > &
                negligible*extent_of(x)) cycle
-            call deck%error(card%place_of('NSET'), 'node '//to_text(number(members(i)))//' is '// &
-               'on the axis, where no direction is radial')
+            call deck%error(deck%card%place_of('NSET'), 'node '//to_text(number(members(i)))// &
+               ' is on the axis, where no direction is radial')
             return
          end do
       end associate

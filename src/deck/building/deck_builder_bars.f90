@@ -2,13 +2,12 @@
 module deck_builder_bars
    use bars, only: bar_type
    use card_values, only: read_field, read_row
-   use cards, only: keyword_card_type
    use deck_context, only: deck_type
    use deck_structure, only: cards_of
    use element_types, only: axial_spring, drawn_line, ground_spring, truss
    use equations, only: fill_equation
    use kinds, only: dp
-   use materials, only: follows_temperature, isotropic, material_type, of_elasticity, of_expansion
+   use materials, only: follows_temperature, isotropic, of_elasticity, of_expansion
    use steps, only: dof_temperature
    use text, only: to_text
    use transforms, only: axis_in_plane
@@ -23,15 +22,17 @@ contains
       type(deck_type), intent(inout) :: deck
       type(bar_type) :: of_line(size(deck%line_number))
       integer :: i
-      integer, allocatable :: card(:)
+      integer, allocatable :: cards(:)
 
-      card = cards_of(deck%cards, 'SPRING')
-      do i = 1, size(card)
-         call read_spring(deck%cards%keywords(card(i)), deck, of_line)
+      cards = cards_of(deck%cards, 'SPRING')
+      do i = 1, size(cards)
+         call deck%open_card(cards(i))
+         call read_spring(deck, of_line)
       end do
-      card = cards_of(deck%cards, 'SOLID SECTION')
-      do i = 1, size(card)
-         call take_section(deck%cards%keywords(card(i)), i, deck, of_line)
+      cards = cards_of(deck%cards, 'SOLID SECTION')
+      do i = 1, size(cards)
+         call deck%open_card(cards(i))
+         call take_section(i, deck, of_line)
       end do
       do i = 1, size(of_line)
          if (deck%line_kind(i) <= drawn_line .or. of_line(i)%stiffness > 0.0_dp) cycle
@@ -43,24 +44,24 @@ contains
    end subroutine build_bars
 
    !> Reads one *SPRING: degrees of freedom where its elements have some, then the constant.
-   subroutine read_spring(card, deck, of_line)
-      type(keyword_card_type), intent(in) :: card
+   subroutine read_spring(deck, of_line)
       type(deck_type), intent(inout) :: deck
       type(bar_type), intent(inout) :: of_line(:)
       integer, allocatable :: members(:)
-      integer :: dof(2), i, k
+      integer :: dof(2), i, k, set
       real(dp) :: stiffness(1)
       logical :: has_dofs, sound, valid
 
-      call take_lines(card, deck, members)
-      if (.not. allocated(members) .or. size(card%data) == 0) return
+      call deck%need_named('ELSET', 'element set', set)
+      if (set == 0 .or. size(deck%card%data) == 0) return
+      members = deck%line_sets(set)%members
       valid = size(members) > 0 .and. all(deck%line_kind(members) > truss)
-      if (.not. valid) call deck%error(card%place_of('ELSET'), 'this set has elements that are '// &
-         'no springs')
+      if (.not. valid) call deck%error(deck%card%place_of('ELSET'), 'this set has elements '// &
+         'that are no springs')
       has_dofs = any(deck%line_kind(members) >= ground_spring)
       dof = 0
       if (has_dofs .and. valid) then
-         associate (data => card%data(1))
+         associate (data => deck%card%data(1))
             do k = 1, maxval(deck%line_kind(members)) - ground_spring + 1
                call read_field(data, k, 'degree of freedom', deck, dof(k), valid)
                associate (ends => deck%line_nodes(k, members))
@@ -74,12 +75,13 @@ contains
             end do
          end associate
       end if
-      if (size(card%data) /= merge(2, 1, has_dofs) .and. valid) then
-         call deck%error(card%place, '*SPRING has one constant, behind a card of degrees of '// &
-            'freedom for SPRING1 and SPRING2')
+      if (size(deck%card%data) /= merge(2, 1, has_dofs) .and. valid) then
+         call deck%error(deck%card%place, '*SPRING has one constant, behind a card of degrees '// &
+            'of freedom for SPRING1 and SPRING2')
          return
       end if
-      call read_row(card%data(size(card%data)), 'spring constant >0', deck, stiffness, sound)
+      call read_row(deck%card%data(size(deck%card%data)), 'spring constant >0', deck, stiffness, &
+         sound)
       if (.not. (valid .and. sound)) return
       do i = 1, size(members)
          associate (bar => of_line(members(i)), nodes => deck%line_nodes(:2, members(i)))
@@ -88,7 +90,7 @@ contains
             bar%follows_axes = has_dofs
             select case (deck%line_kind(members(i)))
             case (axial_spring)
-               call set_axial(nodes, card, deck, bar)
+               call set_axial(nodes, deck, bar)
             case (ground_spring)
                call fill_equation(nodes(:1), dof(:1), [1.0_dp], bar%elongation)
             case default
@@ -99,28 +101,33 @@ contains
    end subroutine read_spring
 
    !> Gives the trusses of a *SOLID SECTION their stiffness; its thickness is their area.
-   subroutine take_section(card, n, deck, of_line)
-      type(keyword_card_type), intent(in) :: card
+   subroutine take_section(n, deck, of_line)
       integer, intent(in) :: n                         ! index of the section
       type(deck_type), intent(inout) :: deck
       type(bar_type), intent(inout) :: of_line(:)
       integer, allocatable :: members(:)
-      integer :: i
+      integer :: i, set
+      logical :: is_plain
 
       if (deck%has_errors()) return
-      call take_lines(card, deck, members)
+      call deck%need_named('ELSET', 'element set', set)
+      members = deck%line_sets(set)%members
       members = pack(members, deck%line_kind(members) == truss)
       if (size(members) == 0) return
       associate (material => deck%model%materials(deck%model%sections(n)%material), area => &
          deck%model%sections(n)%thickness)
-         if (.not. is_plain(material)) then
-            call deck%error(card%place_of('MATERIAL'), 'trusses need *ELASTIC, isotropic, and '// &
-               'properties that are constant')
+         is_plain = material%has(of_elasticity) .and. .not. follows_temperature(material)
+         if (allocated(material%given)) is_plain = is_plain .and. all([( &
+            material%given(i)%symmetry == isotropic .and. (material%given(i)%kind /= &
+            of_expansion .or. size(material%given(i)%values, 1) == 1), i=1, size(material%given))])
+         if (.not. is_plain) then
+            call deck%error(deck%card%place_of('MATERIAL'), 'trusses need *ELASTIC, isotropic, '// &
+               'and properties that are constant')
             return
          end if
          do i = 1, size(members)
             associate (bar => of_line(members(i)), nodes => deck%line_nodes(:2, members(i)))
-               call set_axial(nodes, card, deck, bar)
+               call set_axial(nodes, deck, bar)
                if (deck%has_errors()) return
                bar%stiffness = youngs_modulus(material%elasticity)*area/norm2( &
                   deck%mesh%coordinates(:, nodes(2)) - deck%mesh%coordinates(:, nodes(1)))
@@ -133,30 +140,18 @@ contains
       end associate
    end subroutine take_section
 
-   !> The lines of the set that ELSET= names; unallocated where there is no such set.
-   subroutine take_lines(card, deck, members)
-      type(keyword_card_type), intent(in) :: card
-      type(deck_type), intent(inout) :: deck
-      integer, allocatable, intent(out) :: members(:)
-      integer :: set
-
-      call deck%need_named(card, 'ELSET', 'element set', set)
-      if (set > 0) members = deck%line_sets(set)%members
-   end subroutine take_lines
-
    !> Makes the distance of two nodes an elongation.
-   subroutine set_axial(nodes, card, deck, bar)
+   subroutine set_axial(nodes, deck, bar)
       integer, intent(in) :: nodes(2)
-      type(keyword_card_type), intent(in) :: card
       type(deck_type), intent(inout) :: deck
       type(bar_type), intent(inout) :: bar
       real(dp) :: along(2)
 
       along = deck%mesh%coordinates(:, nodes(2)) - deck%mesh%coordinates(:, nodes(1))
       if (all(abs(along) <= 0.0_dp)) then
-         call deck%error(card%place, 'nodes '//to_text(deck%mesh%node_number(nodes(1)))//' and '// &
-            to_text(deck%mesh%node_number(nodes(2)))//' of an element of this set stand at one '// &
-            'place: it has no direction; take SPRING2')
+         call deck%error(deck%card%place, 'nodes '//to_text(deck%mesh%node_number(nodes(1)))// &
+            ' and '//to_text(deck%mesh%node_number(nodes(2)))//' of an element of this set '// &
+            'stand at one place: it has no direction; take SPRING2')
          return
       end if
       along = along/norm2(along)
@@ -164,20 +159,6 @@ contains
          [-along, along], bar%elongation)
    end subroutine set_axial
 
-   !> Whether a material is isotropic and does not follow the temperature.
-   pure logical function is_plain(material)
-      type(material_type), intent(in) :: material
-      integer :: i
-
-      is_plain = material%has(of_elasticity) .and. .not. follows_temperature(material)
-      if (.not. allocated(material%given)) return
-      do i = 1, size(material%given)
-         is_plain = is_plain .and. material%given(i)%symmetry == isotropic .and. &
-            (material%given(i)%kind /= of_expansion .or. size(material%given(i)%values, 1) == 1)
-      end do
-   end function is_plain
-
-   !> Young's modulus of an isotropic elasticity.
    pure real(dp) function youngs_modulus(elasticity) result(modulus)
       real(dp), intent(in) :: elasticity(4, 4)         !! [stress]
 

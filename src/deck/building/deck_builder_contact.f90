@@ -1,9 +1,9 @@
 !> *CONTACT PAIR, *CLEARANCE and *TIE -> contact between surfaces, and surfaces that are tied;
 !> *CHANGE FRICTION, *MODEL CHANGE and *CONTACT INTERFERENCE -> what a step changes of contact.
 module deck_builder_contact
-   use card_parameters, only: choice, need_parameter, needed_choice, take_parameter
-   use card_values, only: check_extra, read_field
-   use cards, only: data_card_type, keyword_card_type
+   use card_values, only: choice, need_parameter, needed_choice, take_parameter, check_extra, &
+      read_field
+   use cards, only: data_card_type
    use contact_definitions, only: contact_changes_type, contact_definition_type, &
       friction_change_type, interference_type, pair_change_type, pairing_nodes, pairing_surfaces
    use deck_builder_interactions, only: build_friction
@@ -25,54 +25,51 @@ contains
    !> Builds all interfaces, one for each data card, and their clearances.
    subroutine build_contacts(deck)
       type(deck_type), intent(inout) :: deck
-      integer, allocatable :: places(:)
+      integer, allocatable :: places(:), contacts(:)
       type(contact_definition_type) :: contact
       character(:), allocatable :: master, slave, text
-      integer, allocatable :: contacts(:)
       real(dp) :: value
       integer :: i, k, n
 
       places = cards_of(deck%cards, 'CONTACT PAIR')
       allocate (deck%model%contacts(0))
       do k = 1, size(places)
-         associate (card => deck%cards%keywords(places(k)))
-            call read_parameters(card, deck, contact)
-            do i = 1, size(card%data)
-               if (is_pattern(card%data(i)%text(1)) .or. is_pattern(card%data(i)%text(2))) then
-                  call add_matching(card, card%data(i), contact, deck)
-               else
-                  call read_faces(card, card%data(i), deck, contact)
-                  call add_contact(card, .false., contact, deck)
-               end if
-            end do
-         end associate
+         call deck%open_card(places(k))
+         call read_parameters(deck, contact)
+         do i = 1, size(deck%card%data)
+            if (is_pattern(deck%card%data(i)%text(1)) .or. is_pattern( &
+               deck%card%data(i)%text(2))) then
+               call add_matching(deck%card%data(i), contact, deck)
+            else
+               call read_faces(deck%card%data(i), deck, contact)
+               call add_contact(.false., contact, deck)
+            end if
+         end do
       end do
       places = cards_of(deck%cards, 'CLEARANCE')
       do n = 1, size(places)
-         associate (card => deck%cards%keywords(places(n)))
-            call need_parameter(card, 'MASTER', deck, master)
-            call need_parameter(card, 'SLAVE', deck, slave)
-            call need_parameter(card, 'VALUE', deck, text)
-            value = 0.0_dp
-            call find_contacts([card%place_of('SLAVE'), card%place_of('MASTER')], slave, master, &
-               deck, contacts)
-            call take_parameter(card, 'VALUE', deck, value)
-            do i = 1, size(contacts)
-               associate (contact => deck%model%contacts(contacts(i)))
-                  if (contact%has_clearance) call deck%error(card%place, 'the clearance of '// &
-                     'contact pair '//contact%name//' is given twice')
-                  contact%has_clearance = .true.
-                  contact%clearance = value
-               end associate
-            end do
-         end associate
+         call deck%open_card(places(n))
+         call need_parameter(deck%card, 'MASTER', deck, master)
+         call need_parameter(deck%card, 'SLAVE', deck, slave)
+         call need_parameter(deck%card, 'VALUE', deck, text)
+         value = 0.0_dp
+         call find_contacts([deck%card%place_of('SLAVE'), deck%card%place_of('MASTER')], slave, &
+            master, deck, contacts)
+         call take_parameter(deck%card, 'VALUE', deck, value)
+         do i = 1, size(contacts)
+            associate (contact => deck%model%contacts(contacts(i)))
+               if (contact%has_clearance) call deck%error(deck%card%place, 'the clearance of '// &
+                  'contact pair '//contact%name//' is given twice')
+               contact%has_clearance = .true.
+               contact%clearance = value
+            end associate
+         end do
       end do
    end subroutine build_contacts
 
    !> Adds an interface for each slave surface that is opposite some master, where names of a data
    !> card are patterns. Its master are those faces that are opposite, or all faces where it slides.
-   subroutine add_matching(card, data, common, deck)
-      type(keyword_card_type), intent(in) :: card
+   subroutine add_matching(data, common, deck)
       type(data_card_type), intent(in) :: data
       type(contact_definition_type), intent(in) :: common
       type(deck_type), intent(inout) :: deck
@@ -123,8 +120,8 @@ contains
             deck%face_places = [deck%face_places, places]
             contact%master = size(deck%mesh%surfaces)
          end if
-         if (.not. card%has('NAME')) contact%name = deck%mesh%surfaces(slaves(i))%name
-         call add_contact(card, .true., contact, deck)
+         if (.not. deck%card%has('NAME')) contact%name = deck%mesh%surfaces(slaves(i))%name
+         call add_contact(.true., contact, deck)
       end do
       if (left > most_named) left_out = left_out//' and '//to_text(left - most_named)//' more'
       if (pairs > 0) call deck%note('*CONTACT PAIR '//to_upper(data%text(1))//', '// &
@@ -165,35 +162,34 @@ contains
          'surface '//to_upper(slave)//' and the master surface '//to_upper(master), 'surface')
    end subroutine find_contacts
 
-   !> Reads what all data cards of a card have in common.
-   subroutine read_parameters(card, deck, contact)
-      type(keyword_card_type), intent(in) :: card
+   subroutine read_parameters(deck, contact)
       type(deck_type), intent(inout) :: deck
       type(contact_definition_type), intent(out) :: contact
       character(:), allocatable :: pairing
       logical :: is_number
 
-      call deck%need_named(card, 'INTERACTION', 'surface interaction', contact%interaction)
-      pairing = choice(card, 'PAIRING', 'NODES/SURFACES', deck, '')
+      call deck%need_named('INTERACTION', 'surface interaction', contact%interaction)
+      pairing = choice(deck%card, 'PAIRING', 'NODES/SURFACES', deck, '')
       if (pairing /= '') contact%pairing = merge(pairing_nodes, pairing_surfaces, &
          pairing == 'NODES')
-      contact%follows_sliding = choice(card, 'SLIDING', 'SMALL/FINITE', deck, 'SMALL') == 'FINITE'
-      contact%adjusts = card%has('ADJUST')
+      contact%follows_sliding = choice(deck%card, 'SLIDING', 'SMALL/FINITE', deck, 'SMALL') == &
+         'FINITE'
+      contact%adjusts = deck%card%has('ADJUST')
       if (contact%adjusts) then   ! a distance, or a node set
-         call read_real(card%text('ADJUST'), contact%adjusted, is_number)
+         call read_real(deck%card%text('ADJUST'), contact%adjusted, is_number)
          if (.not. is_number) then
-            call deck%need_named(card, 'ADJUST', 'node set', contact%adjusted_set)
+            call deck%need_named('ADJUST', 'node set', contact%adjusted_set)
          else if (contact%adjusted < 0.0_dp) then
-            call deck%error(card%place_of('ADJUST'), 'the distance of ADJUST= must not be negative')
+            call deck%error(deck%card%place_of('ADJUST'), 'the distance of ADJUST= must not be '// &
+               'negative')
          end if
       end if
-      contact%card = card%place%image
-      contact%name = card%text('NAME')
+      contact%card = deck%card%place%image
+      contact%name = deck%card%text('NAME')
    end subroutine read_parameters
 
    !> Reads the two surfaces; the slave's name is that of a card without NAME=.
-   subroutine read_faces(card, data, deck, faces)
-      type(keyword_card_type), intent(in) :: card
+   subroutine read_faces(data, deck, faces)
       type(data_card_type), intent(in) :: data
       type(deck_type), intent(inout) :: deck
       type(contact_definition_type), intent(inout) :: faces
@@ -208,27 +204,26 @@ contains
          trim(merge('tied to itself           ', 'in contact with itself   ', faces%is_tied)))
       call need_faces(data%place(1), trim(merge(tied, held, faces%is_tied)), deck, faces%slave)
       if (faces%is_tied) call need_faces(data%place(2), trim(tied), deck, faces%master)
-      if (card%has('NAME')) return
+      if (deck%card%has('NAME')) return
       if (size(data%fields) > 0) faces%name = data%fields(1)%text
-      if (faces%is_tied) call deck%note('*'//card%name//' without NAME=: '//faces%name//', the '// &
-         'slave surface')
+      if (faces%is_tied) call deck%note('*'//deck%card%name//' without NAME=: '//faces%name// &
+         ', the slave surface')
    end subroutine read_faces
 
    !> Adds a pair. Its name stands for a group of the result file: it is used once, and is one
    !> that HDF5 allows for a group. The pair has the name of its slave surface only if no other has
    !> it; it follows the name of a card with several pairs.
-   subroutine add_contact(card, by_pattern, contact, deck)
-      type(keyword_card_type), intent(in) :: card
+   subroutine add_contact(by_pattern, contact, deck)
       logical, intent(in) :: by_pattern         ! whether it is one of several of a data card
       type(contact_definition_type), intent(in) :: contact
       type(deck_type), intent(inout) :: deck
       character(:), allocatable :: name
       logical :: is_taken, several
 
-      several = card%has('NAME') .and. (by_pattern .or. size(card%data) > 1)
+      several = deck%card%has('NAME') .and. (by_pattern .or. size(deck%card%data) > 1)
       name = contact%name
       if (several .and. contact%slave > 0) name = name//'-'//deck%mesh%surfaces(contact%slave)%name
-      if ((several .or. .not. card%has('NAME')) .and. contact%master > 0) then
+      if ((several .or. .not. deck%card%has('NAME')) .and. contact%master > 0) then
          is_taken = deck%index_of('contact pair', name) > 0
          if (is_taken) name = name//'-'//deck%mesh%surfaces(contact%master)%name
          if (.not. by_pattern) call deck%note('*CONTACT PAIR '// &
@@ -237,7 +232,7 @@ contains
       end if
       deck%model%contacts = [deck%model%contacts, contact]
       deck%model%contacts(size(deck%model%contacts))%name = name
-      associate (place => card%place_of('NAME'))
+      associate (place => deck%card%place_of('NAME'))
          if (deck%index_of('contact pair', name) > 0) call deck%error(place, 'contact pair '// &
             name//' is defined twice')
          call deck%add_name('contact pair', name)
@@ -258,27 +253,26 @@ contains
       allocate(deck%model%ties(data_count(deck%cards, places)))
       n = 0
       do k = 1, size(places)
-         associate (card => deck%cards%keywords(places(k)))
-            if (choice(card, 'ADJUST', 'YES/NO', deck, 'NO') == 'YES') call deck%note('*TIE, '// &
-               'ADJUST=YES: nodes are not moved, an initial gap is not closed')
-            do i = 1, n
-               if (card%has('NAME') .and. to_upper(deck%model%ties(i)%faces%name) == to_upper( &
-                  card%text('NAME'))) call deck%error(card%place_of('NAME'), &
-                  deck%model%ties(i)%faces%title()//' is defined twice')
-            end do
-            do i = 1, size(card%data)
-               n = n + 1
-               associate (tie => deck%model%ties(n))
-                  tie%faces%is_tied = .true.
-                  tie%faces%card = card%place%image
-                  tie%faces%name = card%text('NAME')
-                  tie%has_tolerance = card%has('POSITION TOLERANCE')
-                  tie%faces%either_side = tie%has_tolerance
-                  call take_parameter(card, 'POSITION TOLERANCE', deck, tie%tolerance, '>=0')
-                  call read_faces(card, card%data(i), deck, tie%faces)
-               end associate
-            end do
-         end associate
+         call deck%open_card(places(k))
+         if (choice(deck%card, 'ADJUST', 'YES/NO', deck, 'NO') == 'YES') call deck%note('*TIE, '// &
+            'ADJUST=YES: nodes are not moved, an initial gap is not closed')
+         do i = 1, n
+            if (deck%card%has('NAME') .and. to_upper(deck%model%ties(i)%faces%name) == to_upper( &
+               deck%card%text('NAME'))) call deck%error(deck%card%place_of('NAME'), &
+               deck%model%ties(i)%faces%title()//' is defined twice')
+         end do
+         do i = 1, size(deck%card%data)
+            n = n + 1
+            associate (tie => deck%model%ties(n))
+               tie%faces%is_tied = .true.
+               tie%faces%card = deck%card%place%image
+               tie%faces%name = deck%card%text('NAME')
+               tie%has_tolerance = deck%card%has('POSITION TOLERANCE')
+               tie%faces%either_side = tie%has_tolerance
+               call take_parameter(deck%card, 'POSITION TOLERANCE', deck, tie%tolerance, '>=0')
+               call read_faces(deck%card%data(i), deck, tie%faces)
+            end associate
+         end do
       end do
    end subroutine build_ties
 
@@ -295,46 +289,45 @@ contains
 
       if (step == 0) return
       changes = deck%model%steps(step)%changes
-      associate (card => deck%cards%keywords(k))
-         select case (card%name)
-         case ('CHANGE FRICTION')
-            if (.not. is_keyword(deck%cards, k + 1, 'FRICTION')) call deck%error(card%place, &
-               '*CHANGE FRICTION needs a *FRICTION after it')
-         case ('FRICTION')
-            if (is_keyword(deck%cards, k - 1, 'CHANGE FRICTION')) then
-               call build_friction(card, deck, change%friction)
-               call deck%need_named(deck%cards%keywords(k - 1), 'INTERACTION', 'surface '// &
-                  'interaction', change%interaction)
-               if (change%interaction == 0) return
-               if (.not. allocated(changes%frictions)) allocate (changes%frictions(0))
-               changes%frictions = [changes%frictions, change]
-            else
-               call deck%error(card%place, '*FRICTION in a step needs *CHANGE FRICTION, '// &
-                  'INTERACTION= before it')
-            end if
-         case ('MODEL CHANGE')
-            if (needed_choice(card, 'TYPE', 'CONTACT PAIR', deck) == '') return
-            pair%removes = card%has('REMOVE')
-            if ((pair%removes .eqv. card%has('ADD')) .and. .not. card%flawed) call deck%error( &
-               card%place, '*MODEL CHANGE needs either ADD or REMOVE')
-            if (.not. allocated(changes%pairs)) allocate (changes%pairs(0))
-            do j = 1, size(card%data)
-               call read_contacts(card%data(j), 2, 'slave surface, master surface', deck, contacts)
-               do i = 1, size(contacts)
-                  pair%contact = contacts(i)
-                  changes%pairs = [changes%pairs, pair]
-               end do
+      call deck%open_card(k)
+      select case (deck%card%name)
+      case ('CHANGE FRICTION')
+         if (.not. is_keyword(deck%cards, k + 1, 'FRICTION')) call deck%error(deck%card%place, &
+            '*CHANGE FRICTION needs a *FRICTION after it')
+      case ('FRICTION')
+         if (is_keyword(deck%cards, k - 1, 'CHANGE FRICTION')) then
+            call build_friction(deck, change%friction)
+            call deck%open_card(k - 1)
+            call deck%need_named('INTERACTION', 'surface interaction', change%interaction)
+            if (change%interaction == 0) return
+            if (.not. allocated(changes%frictions)) allocate (changes%frictions(0))
+            changes%frictions = [changes%frictions, change]
+         else
+            call deck%error(deck%card%place, '*FRICTION in a step needs *CHANGE FRICTION, '// &
+               'INTERACTION= before it')
+         end if
+      case ('MODEL CHANGE')
+         if (needed_choice(deck%card, 'TYPE', 'CONTACT PAIR', deck) == '') return
+         pair%removes = deck%card%has('REMOVE')
+         if ((pair%removes .eqv. deck%card%has('ADD')) .and. &
+            .not. deck%card%flawed) call deck%error(deck%card%place, '*MODEL CHANGE needs '// &
+            'either ADD or REMOVE')
+         if (.not. allocated(changes%pairs)) allocate (changes%pairs(0))
+         do j = 1, size(deck%card%data)
+            call read_contacts(deck%card%data(j), 2, 'slave surface, master surface', deck, &
+               contacts)
+            do i = 1, size(contacts)
+               pair%contact = contacts(i)
+               changes%pairs = [changes%pairs, pair]
             end do
-         case default
-            call change_interferences(card, step, deck, changes)
-         end select
-      end associate
+         end do
+      case default
+         call change_interferences(step, deck, changes)
+      end select
       deck%model%steps(step)%changes = changes
    end subroutine build_contact_change
 
-   !> The interferences of some interfaces.
-   subroutine change_interferences(card, step, deck, changes)
-      type(keyword_card_type), intent(in) :: card
+   subroutine change_interferences(step, deck, changes)
       integer, intent(in) :: step
       type(deck_type), intent(inout) :: deck
       type(contact_changes_type), intent(inout) :: changes
@@ -344,33 +337,35 @@ contains
       integer :: i, j
       logical :: valid
 
-      kind = choice(card, 'TYPE', 'CONTACT PAIR', deck, '')
-      if (choice(card, 'OP', 'MOD/NEW', deck, 'MOD') == 'NEW') changes%ends_interferences = .true.
-      given%shrinks = card%has('SHRINK')
-      if (given%shrinks .and. step > 1) call deck%error(card%place_of('SHRINK'), 'SHRINK is '// &
-         'allowed in the first step only: it removes the initial overlaps')
-      if (given%shrinks .and. card%has('AMPLITUDE')) then
+      kind = choice(deck%card, 'TYPE', 'CONTACT PAIR', deck, '')
+      if (choice(deck%card, 'OP', 'MOD/NEW', deck, 'MOD') == 'NEW') changes%ends_interferences = &
+         .true.
+      given%shrinks = deck%card%has('SHRINK')
+      if (given%shrinks .and. step > 1) call deck%error(deck%card%place_of('SHRINK'), 'SHRINK '// &
+         'is allowed in the first step only: it removes the initial overlaps')
+      if (given%shrinks .and. deck%card%has('AMPLITUDE')) then
          call deck%note('*CONTACT INTERFERENCE, SHRINK: AMPLITUDE= is ignored')
       else
-         call deck%take_named(card, 'AMPLITUDE', 'amplitude', given%amplitude)
+         call deck%take_named('AMPLITUDE', 'amplitude', given%amplitude)
       end if
       if (.not. allocated(changes%interferences)) allocate (changes%interferences(0))
-      do j = 1, size(card%data)
+      do j = 1, size(deck%card%data)
          valid = .true.
          given%value = 1.0_dp
          if (given%shrinks) then
-            call read_contacts(card%data(j), 2, 'slave surface, master surface', deck, contacts)
+            call read_contacts(deck%card%data(j), 2, 'slave surface, master surface', deck, &
+               contacts)
          else
-            call read_contacts(card%data(j), 3, 'slave surface, master surface, interference', &
-               deck, contacts)
-            call read_field(card%data(j), 3, 'interference', deck, given%value, valid)
+            call read_contacts(deck%card%data(j), 3, &
+               'slave surface, master surface, interference', deck, contacts)
+            call read_field(deck%card%data(j), 3, 'interference', deck, given%value, valid)
          end if
          if (.not. valid) cycle
          do i = 1, size(contacts)
             given%contact = contacts(i)
             changes%interferences = [changes%interferences, given]
-            if (.not. given%shrinks) call check_clearance(card%data(j), &
-               deck%model%contacts(given%contact), given%value, deck)
+            if (.not. given%shrinks) call check_clearance(deck%card%data(j), deck%model%contacts( &
+               given%contact), given%value, deck)
          end do
       end do
    end subroutine change_interferences

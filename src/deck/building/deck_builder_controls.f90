@@ -1,8 +1,7 @@
 !> Cards of a step beside its loads: *FIXED POINT, *THERMAL SCHEME and *START; *NODE PRINT and
 !> *EL PRINT, tables of the listing.
 module deck_builder_controls
-   use card_parameters, only: choice, needed_choice, take_parameter
-   use card_values, only: read_row
+   use card_values, only: choice, needed_choice, take_parameter, read_row
    use cards, only: data_card_type, keyword_card_type
    use controls, only: continuation_type, crank_nicolson_scheme, explicit_scheme, &
       fixed_point_type, galerkin_scheme, implicit_scheme, l_stable_scheme, method_names, &
@@ -40,59 +39,57 @@ module deck_builder_controls
 contains
 
    !> Reads one *FIXED POINT; what it does not say stays as it was.
-   subroutine build_fixed_point(card, deck, fixed_point)
-      type(keyword_card_type), intent(in) :: card
+   subroutine build_fixed_point(deck, fixed_point)
       type(deck_type), intent(inout) :: deck
       type(fixed_point_type), intent(inout) :: fixed_point    !! receives the controls
       character(:), allocatable :: method
 
-      method = choice(card, 'METHOD', 'PICARD/ZAITSEV/ANDERSON/NEWTON', deck, '')
+      method = choice(deck%card, 'METHOD', 'PICARD/ZAITSEV/ANDERSON/NEWTON', deck, '')
       if (method /= '') fixed_point%method = findloc(method_names == method, .true., dim=1)
-      call take_parameter(card, 'TOL', deck, fixed_point%tolerance, '>0')
-      call take_parameter(card, 'MAXITER', deck, fixed_point%max_iterations, '>=1')
-      call take_parameter(card, 'G', deck, fixed_point%g, '>0 <=1')
-      call take_parameter(card, 'CONSTANT', deck, fixed_point%constant, '>=0')
+      call take_parameter(deck%card, 'TOL', deck, fixed_point%tolerance, '>0')
+      call take_parameter(deck%card, 'MAXITER', deck, fixed_point%max_iterations, '>=1')
+      call take_parameter(deck%card, 'G', deck, fixed_point%g, '>0 <=1')
+      call take_parameter(deck%card, 'CONSTANT', deck, fixed_point%constant, '>=0')
    end subroutine build_fixed_point
 
    !> Reads what one *RESTART says of writing; where to go on from is read before the steps are.
-   subroutine build_restart(card, deck, controls)
-      type(keyword_card_type), intent(in) :: card
+   subroutine build_restart(deck, controls)
       type(deck_type), intent(inout) :: deck
       type(step_controls_type), intent(inout) :: controls     !! receives when they are written
       integer :: place
 
       place = 1
-      if (card%has('READ')) then
-         call take_parameter(card, 'STEP', deck, place, '>=1')
-         call take_parameter(card, 'INC', deck, place, '>=1')
-         if (card%has('INC') .and. .not. card%has('STEP')) call deck%error(card%place_of('INC'), &
-            'INC= needs STEP=')
+      if (deck%card%has('READ')) then
+         call take_parameter(deck%card, 'STEP', deck, place, '>=1')
+         call take_parameter(deck%card, 'INC', deck, place, '>=1')
+         if (deck%card%has('INC') .and. .not. deck%card%has('STEP')) call deck%error( &
+            deck%card%place_of('INC'), 'INC= needs STEP=')
       else
          call report_alone('STEP', 'READ')
          call report_alone('INC', 'READ')
       end if
-      if (.not. card%has('WRITE')) then
+      if (.not. deck%card%has('WRITE')) then
          call report_alone('FREQUENCY', 'WRITE')
          call report_alone('OVERLAY', 'WRITE')
-         if (size(card%parameters) == 0 .and. .not. card%flawed) call deck%error(card%place, &
-            '*RESTART needs WRITE, to keep states of the run, or READ, to go on from one')
+         if (size(deck%card%parameters) == 0 .and. .not. deck%card%flawed) call deck%error( &
+            deck%card%place, '*RESTART needs WRITE, to keep states of the run, or READ, to go '// &
+            'on from one')
          return
       end if
       controls%restart_frequency = 1
-      call take_parameter(card, 'FREQUENCY', deck, controls%restart_frequency, '>=0')
-      controls%overlays_restarts = card%has('OVERLAY')
+      call take_parameter(deck%card, 'FREQUENCY', deck, controls%restart_frequency, '>=0')
+      controls%overlays_restarts = deck%card%has('OVERLAY')
    contains
       subroutine report_alone(parameter, other)
          character(*), intent(in) :: parameter, other
 
-         if (card%has(parameter)) call deck%error(card%place_of(parameter), parameter//' needs '// &
-            other)
+         if (deck%card%has(parameter)) call deck%error(deck%card%place_of(parameter), parameter// &
+            ' needs '//other)
       end subroutine report_alone
    end subroutine build_restart
 
    !> Reads one *THERMAL SCHEME; after an error the scheme stays as it was.
-   subroutine build_thermal_scheme(card, deck, scheme)
-      type(keyword_card_type), intent(in) :: card
+   subroutine build_thermal_scheme(deck, scheme)
       type(deck_type), intent(inout) :: deck
       type(thermal_scheme_type), intent(inout) :: scheme      !! receives the coefficients
       type(thermal_scheme_type), parameter :: schemes(*) = [implicit_scheme, galerkin_scheme, &
@@ -102,19 +99,19 @@ contains
       integer :: i
       logical :: valid
 
-      kind = needed_choice(card, 'TYPE', &
+      kind = needed_choice(deck%card, 'TYPE', &
          'IMPLICIT/GALERKIN/CRANK-NICOLSON/EXPLICIT/L-STABLE/FREE', deck)
       i = findloc(schemes%name == kind, .true., dim=1)
       if (i > 0) scheme = schemes(i)
-      if (i > 0 .and. size(card%data) > 0) call deck%error(card%data(1)%place(1), 'extra data '// &
-         'card; *THERMAL SCHEME has one with TYPE=FREE only')
+      if (i > 0 .and. size(deck%card%data) > 0) call deck%error(deck%card%data(1)%place(1), &
+         'extra data card; *THERMAL SCHEME has one with TYPE=FREE only')
       if (kind /= 'FREE') return
-      if (size(card%data) == 0) then
-         call deck%error(card%place, '*THERMAL SCHEME, TYPE=FREE needs a data card')
+      if (size(deck%card%data) == 0) then
+         call deck%error(deck%card%place, '*THERMAL SCHEME, TYPE=FREE needs a data card')
          return
       end if
       ! Coefficients of eq. (3.4) as the card gives them; multiples of them are the same scheme.
-      associate (data => card%data(1))
+      associate (data => deck%card%data(1))
          call read_row(data, 'a1 >0/a2 >=0/a3 >=0/b1/b2/b3/c1/c2', deck, given, valid)
          if (.not. valid) return
          sums = [given(1) + given(4), sum(given(7:8)), sum(given([2, 3, 5, 6]))]
@@ -127,32 +124,29 @@ contains
                to_text(sums(1))//', c1 + c2 = '//to_text(sums(2))//', a2 + a3 + b2 + b3 = '// &
                to_text(sums(3))//' must be equal')
          else
-            scheme = thermal_scheme_type(given(1:3)/sums(1), given(4:6)/sums(1), &
-               given(7:8)/sums(1))
+            scheme = thermal_scheme_type(given(1:3)/sums(1), given(4:6)/sums(1), given(7:8)/sums(1))
          end if
       end associate
    end subroutine build_thermal_scheme
 
    !> Reads one *CONTINUATION.
-   subroutine build_continuation(card, deck, continuation)
-      type(keyword_card_type), intent(in) :: card
+   subroutine build_continuation(deck, continuation)
       type(deck_type), intent(inout) :: deck
       type(continuation_type), intent(out) :: continuation
 
       continuation%is_on = .true.
-      call take_parameter(card, 'POINTS', deck, continuation%most_points, '>=2')
-      call take_parameter(card, 'LOWEST', deck, continuation%range(1))
-      call take_parameter(card, 'HIGHEST', deck, continuation%range(2))
-      call take_parameter(card, 'ARC', deck, continuation%longest_step, '>0')
-      continuation%rises = choice(card, 'DIRECTION', 'UP/DOWN', deck, 'UP') == 'UP'
+      call take_parameter(deck%card, 'POINTS', deck, continuation%most_points, '>=2')
+      call take_parameter(deck%card, 'LOWEST', deck, continuation%range(1))
+      call take_parameter(deck%card, 'HIGHEST', deck, continuation%range(2))
+      call take_parameter(deck%card, 'ARC', deck, continuation%longest_step, '>0')
+      continuation%rises = choice(deck%card, 'DIRECTION', 'UP/DOWN', deck, 'UP') == 'UP'
       if (continuation%range(1) < continuation%range(2)) return
-      call deck%error(card%place_of('HIGHEST'), 'LOWEST='//to_text(continuation%range(1))// &
+      call deck%error(deck%card%place_of('HIGHEST'), 'LOWEST='//to_text(continuation%range(1))// &
          ' must be below HIGHEST='//to_text(continuation%range(2))//': the range of load factors')
    end subroutine build_continuation
 
    !> Reads one *START; after an error the start stays as it was.
-   subroutine build_start(card, deck, start)
-      type(keyword_card_type), intent(in) :: card
+   subroutine build_start(deck, start)
       type(deck_type), intent(inout) :: deck
       type(start_type), intent(inout) :: start           !! receives the start
       real(dp) :: given(size(deck%model%contacts)), value(2)
@@ -160,9 +154,9 @@ contains
       integer :: i, k
       logical :: sound, valid
 
-      from = needed_choice(card, 'FROM', 'PREVIOUS/OPEN/CLOSED/BOTH/GIVEN', deck)
-      if (from /= 'GIVEN' .and. size(card%data) > 0 .and. from /= '') call deck%error( &
-         card%data(1)%place(1), 'extra data card; *START has them with FROM=GIVEN only')
+      from = needed_choice(deck%card, 'FROM', 'PREVIOUS/OPEN/CLOSED/BOTH/GIVEN', deck)
+      if (from /= 'GIVEN' .and. size(deck%card%data) > 0 .and. from /= '') call deck%error( &
+         deck%card%data(1)%place(1), 'extra data card; *START has them with FROM=GIVEN only')
       if (from == 'PREVIOUS') start%kind = start_previous
       if (from == 'OPEN') start%kind = start_open
       if (from == 'CLOSED') start%kind = start_closed
@@ -170,28 +164,24 @@ contains
       if (from /= 'GIVEN') return
       given = 0.0_dp
       sound = .true.
-      do k = 1, size(card%data)
-         associate (data => card%data(k))
-            call read_row(data, '@contact pair/conductance >0', deck, value, valid)
-            call deck%need_item(data, 1, 'contact pair', 'contact pair', i)
-            if (valid .and. i > 0) given(i) = value(2)
-            sound = sound .and. valid .and. i > 0
-         end associate
+      do k = 1, size(deck%card%data)
+         call read_row(deck%card%data(k), '@contact pair/conductance >0', deck, value, valid)
+         call deck%need_item(deck%card%data(k), 1, 'contact pair', 'contact pair', i)
+         if (valid .and. i > 0) given(i) = value(2)
+         sound = sound .and. valid .and. i > 0
       end do
       if (.not. sound) return
       i = findloc(given > 0.0_dp, .false., dim=1)
       if (i == 0) then
          start = start_type(kind=start_given, conductance=given)
       else
-         call deck%error(card%place, '*START, FROM=GIVEN gives no conductance to '// &
+         call deck%error(deck%card%place, '*START, FROM=GIVEN gives no conductance to '// &
             deck%model%contacts(i)%name)
       end if
    end subroutine build_start
 
-   !> Reads *NODE PRINT or *EL PRINT. The first card of its keyword in a step ends the tables of
-   !> former steps.
-   subroutine build_print(card, is_later, deck, requests)
-      type(keyword_card_type), intent(in) :: card
+   !> Reads *NODE PRINT or *EL PRINT. The first one in a step ends the tables of former steps.
+   subroutine build_print(is_later, deck, requests)
       logical, intent(inout) :: is_later   !! whether its step has one before; becomes true
       type(deck_type), intent(inout) :: deck
       type(print_request_type), allocatable, intent(inout) :: requests(:) !! receives the table
@@ -202,57 +192,57 @@ contains
 
       if (allocated(requests) .and. .not. is_later) deallocate(requests)
       is_later = .true.
-      if (card%name == 'NODE PRINT') then
-         call take_set(card, 'NSET', 'node set', deck, request%set, is_known)
+      if (deck%card%name == 'NODE PRINT') then
+         call take_set('NSET', 'node set', deck, request%set, is_known)
          if (request%set > 0) then
             associate (set => deck%mesh%node_sets(request%set))
                if (size(set%members) > 0 .and. all(deck%dropped(set%members))) then
-                  call deck%warning(card%place_of('NSET'), 'ORDER=1 leaves no node of '// &
+                  call deck%warning(deck%card%place_of('NSET'), 'ORDER=1 leaves no node of '// &
                      set%name//', because none is a corner: nothing is printed')
                   is_known = .false.
                end if
             end associate
          end if
-         totals = choice(card, 'TOTALS', 'YES/NO/ONLY', deck, 'NO')
+         totals = choice(deck%card, 'TOTALS', 'YES/NO/ONLY', deck, 'NO')
          request%each_node = totals /= 'ONLY'
          request%totals = totals /= 'NO'
       else
-         call take_set(card, 'ELSET', 'element set', deck, request%set, is_known)
+         call take_set('ELSET', 'element set', deck, request%set, is_known)
          if (request%set > 0) then
             if (deck%mesh%element_sets(request%set)%of_lines) then
-               call deck%warning(card%place_of('ELSET'), 'element set '// &
+               call deck%warning(deck%card%place_of('ELSET'), 'element set '// &
                   deck%mesh%element_sets(request%set)%name//' has only lines, springs or '// &
                   'trusses: nothing is printed')
                is_known = .false.
             end if
          end if
       end if
-      request%local_axes = choice(card, 'GLOBAL', 'YES/NO', deck, 'NO') == 'NO'
-      call read_frequency(card, deck, request%frequency, request%points)
+      request%local_axes = choice(deck%card, 'GLOBAL', 'YES/NO', deck, 'NO') == 'NO'
+      call read_frequency(deck, request%frequency, request%points)
       allocate(request%quantities(0))
-      do j = 1, size(card%data)
-         do i = 1, size(card%data(j)%fields)
-            if (card%data(j)%has(i)) call take_quantity(card, card%data(j), i, deck, &
-               request%quantities)
+      do j = 1, size(deck%card%data)
+         do i = 1, size(deck%card%data(j)%fields)
+            if (deck%card%data(j)%has(i)) call take_quantity(deck%card, deck%card%data(j), i, &
+               deck, request%quantities)
          end do
       end do
-      if (size(card%data) == 0) call deck%note('*'//card%name//' without data prints nothing')
+      if (size(deck%card%data) == 0) call deck%note('*'//deck%card%name//' without data prints '// &
+         'nothing')
       if (.not. is_known .or. size(request%quantities) == 0) return
       if (.not. allocated(requests)) allocate (requests(0))
       requests = [requests, request]
    end subroutine build_print
 
    !> Takes the set of a table. One that is not known is no error where the cards of sets have some.
-   subroutine take_set(card, parameter, noun, deck, set, is_known)
-      type(keyword_card_type), intent(in) :: card
+   subroutine take_set(parameter, noun, deck, set, is_known)
       character(*), intent(in) :: parameter, noun
       type(deck_type), intent(inout) :: deck
       integer, intent(inout) :: set
       logical, intent(out) :: is_known
 
-      if (.not. deck%has_lost('set') .or. deck%index_of(noun, card%text(parameter)) > 0) call &
-         deck%take_named(card, parameter, noun, set)
-      is_known = set > 0 .or. card%lacks(parameter)
+      if (.not. deck%has_lost('set') .or. deck%index_of(noun, deck%card%text(parameter)) > &
+         0) call deck%take_named(parameter, noun, set)
+      is_known = set > 0 .or. deck%card%lacks(parameter)
    end subroutine take_set
 
    !> One key: what is not computed, or what nobody knows, is ignored with a warning.
@@ -281,9 +271,8 @@ contains
       if (i > 0) then
          if (needed(meanings(i)) /= '') then
             ! Its card may be one with an error.
-            if (.not. deck%has_errors()) call deck%warning(data%place(position), key// &
-               ' of *'//card%name//' is not there without *'//needed(meanings(i))//': it is '// &
-               'not printed')
+            if (.not. deck%has_errors()) call deck%warning(data%place(position), key//' of *'// &
+               card%name//' is not there without *'//needed(meanings(i))//': it is not printed')
          else if (all(quantities /= meanings(i))) then
             quantities = [quantities, meanings(i)]
          end if
@@ -316,8 +305,7 @@ contains
    end subroutine take_quantity
 
    !> FREQUENCY=n, default 1.
-   subroutine read_frequency(card, deck, frequency, points)
-      type(keyword_card_type), intent(in) :: card
+   subroutine read_frequency(deck, frequency, points)
       type(deck_type), intent(inout) :: deck
       integer, intent(out) :: frequency                 !! n, at least 0
       type(time_points_type), intent(out) :: points     !! those that the card names
@@ -325,12 +313,12 @@ contains
 
       frequency = 1
       i = 0
-      call deck%take_named(card, 'TIME POINTS', 'time points', i)
+      call deck%take_named('TIME POINTS', 'time points', i)
       if (i > 0) then
          points = deck%time_points(i)
          frequency = huge(frequency)   ! the last increment is written besides
       end if
-      call take_parameter(card, 'FREQUENCY', deck, frequency, '>=0')
+      call take_parameter(deck%card, 'FREQUENCY', deck, frequency, '>=0')
    end subroutine read_frequency
 
 end module deck_builder_controls

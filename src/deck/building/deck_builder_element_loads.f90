@@ -1,7 +1,7 @@
 !> Data cards of loads with a label: *DLOAD, *DFLUX and *FILM with an element, a set or a surface,
 !> *DSLOAD, *DSFLUX and *SFILM with a surface; GRAV and CENTRIF act on the mass of elements.
 module deck_builder_element_loads
-   use card_values, only: read_field, plane_vector, read_row
+   use card_values, only: read_field, read_row
    use cards, only: data_card_type
    use deck_builder_rigid, only: need_faces
    use deck_builder_sets, only: check_face
@@ -203,14 +203,21 @@ contains
    subroutine add_vector(label, data, given, surface, request, deck)
       character(*), intent(in) :: label
       type(data_card_type), intent(in) :: data
-      real(dp), intent(in) :: given(4)
+      real(dp), intent(in) :: given(4)                     ! magnitude, direction x, y and z
       integer, intent(in) :: surface                       ! of tractions
       type(request_type), intent(inout) :: request         ! step, amplitude, card, elements
       type(deck_type), intent(inout) :: deck
       real(dp) :: vector(2)
       integer :: i
 
-      call plane_vector(data, 3, given, deck, vector)
+      vector = 0.0_dp
+      if (abs(given(4)) > 0.0_dp) then
+         call deck%error(data%place(6), 'the direction lies in the plane: z must be 0')
+      else if (norm2(given(2:3)) <= 0.0_dp) then
+         call deck%error(data%place(4), 'the direction is zero')
+      else
+         vector = given(1)*given(2:3)/norm2(given(2:3))
+      end if
       if (label == 'TRSHR') then
          call add_shear(surface, vector, data, request, deck)
          return

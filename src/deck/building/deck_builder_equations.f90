@@ -1,22 +1,23 @@
-!> *EQUATION, *COUPLING with *KINEMATIC, *RIGID BODY -> linear equations between degrees of freedom.
+!> *EQUATION, *COUPLING with *KINEMATIC, *RIGID BODY -> linear equations between degrees of freedom;
+!> *PRE-TENSION SECTION -> a body cut in two, and the section that joins its faces again.
 module deck_builder_equations
-   use card_parameters, only: need_parameter
-   use card_values, only: read_field, read_row
-   use cards, only: keyword_card_type
+   use card_values, only: need_parameter, read_field, read_row
    use deck_builder_rigid, only: build_rigid_body, check_rigid_masters, need_faces
-   use equations, only: coupling_type, equation_type
    use deck_context, only: deck_type
    use deck_source, only: place_type
    use deck_structure, only: cards_of, is_keyword
+   use equations, only: coupling_type, equation_type
    use kinds, only: dp
    use load_requests, only: target_type
+   use mesh, only: surface_type
+   use section_cuts, only: cut_mesh, section_normal, unit_vector
    use sorting, only: sort_order
    use steps, only: dof_temperature
    use text, only: read_integer, to_text
    use transforms, only: axis_in_plane
    implicit none
    private
-   public :: build_equations, build_couplings, find_reference
+   public :: build_equations, build_couplings, find_reference, build_pre_tensions
 
    integer, parameter :: term_fields = 3   !! node or set, degree of freedom, coefficient
 
@@ -42,25 +43,23 @@ contains
       allocate (list(64))
       places = cards_of(deck%cards, 'EQUATION')
       do k = 1, size(places)
-         associate (card => deck%cards%keywords(places(k)))
-            data = 1
-            do while (data <= size(card%data))
-               first = data
-               call read_terms(card, data, deck, terms)
-               valid = allocated(terms)
-               if (valid) call check_terms(terms, deck, valid)
-               if (valid) call add_equations(terms, card%data(first)%place(1), deck, list, count)
-               if (.not. valid) call deck%lose('equation')
-            end do
-         end associate
+         call deck%open_card(places(k))
+         data = 1
+         do while (data <= size(deck%card%data))
+            first = data
+            call read_terms(data, deck, terms)
+            valid = allocated(terms)
+            if (valid) call check_terms(terms, deck, valid)
+            if (valid) call add_equations(terms, deck%card%data(first)%place(1), deck, list, count)
+            if (.not. valid) call deck%lose('equation')
+         end do
       end do
       deck%model%equations = list(:count)
    end subroutine build_equations
 
    !> Reads one equation: the number of its terms, then the terms, any number on a card, each a node
    !> or set, degree of freedom, coefficient.
-   subroutine read_terms(card, data, deck, terms)
-      type(keyword_card_type), intent(in) :: card
+   subroutine read_terms(data, deck, terms)
       integer, intent(inout) :: data               ! its first data card; then that behind it
       type(deck_type), intent(inout) :: deck
       type(term_type), allocatable, intent(out) :: terms(:)   ! unallocated after an error
@@ -71,14 +70,14 @@ contains
       integer :: dof, i, n
       logical :: valid
 
-      place = card%data(data)%place(1)
-      call read_row(card%data(data), '#number of terms >0', deck, given, valid)
+      place = deck%card%data(data)%place(1)
+      call read_row(deck%card%data(data), '#number of terms >0', deck, given, valid)
       n = nint(given(1))
       data = data + 1
       allocate (found(0))
-      do while (valid .and. size(found) < n .and. data <= size(card%data))
-         do i = 1, size(card%data(data)%fields), term_fields
-            associate (row => card%data(data))
+      do while (valid .and. size(found) < n .and. data <= size(deck%card%data))
+         do i = 1, size(deck%card%data(data)%fields), term_fields
+            associate (row => deck%card%data(data))
                term%place = row%place(i)
                call deck%need_target('node', row, i, term%target_type, valid)
                call read_field(row, i + 1, 'degree of freedom', deck, dof, valid)
@@ -95,7 +94,7 @@ contains
          data = data + 1
       end do
       if (.not. valid) then
-         data = size(card%data) + 1
+         data = size(deck%card%data) + 1
       else if (size(found) /= n) then
          call deck%error(place, 'the equation should have '//to_text(n)//' terms; '// &
             to_text(size(found))//' are given')
@@ -184,49 +183,47 @@ contains
          size(cards_of(deck%cards, 'RIGID BODY'))))
       n = 0
       do k = 1, size(deck%cards%keywords)
-         associate (card => deck%cards%keywords(k))
-            if (any(card%name == [character(10) :: 'RIGID BODY', 'COUPLING'])) then
-               n = n + 1
-               associate (coupling => deck%model%couplings(n), nodes => deck%mesh%node_number)
-                  coupling%rotation = size(nodes) - size(deck%model%couplings) + n
-                  coupling%card = card%place%image
-                  coupling%title = '*'//card%name//', '//deck%source%words_of(card%place)
-                  call find_reference('REF NODE', card, deck, coupling%reference)
-                  if (coupling%reference > 0) deck%mesh%coordinates(:, coupling%rotation) = &
-                     deck%mesh%coordinates(:, coupling%reference)
-               end associate
+         call deck%open_card(k)
+         if (any(deck%card%name == [character(10) :: 'RIGID BODY', 'COUPLING'])) then
+            n = n + 1
+            associate (coupling => deck%model%couplings(n), nodes => deck%mesh%node_number)
+               coupling%rotation = size(nodes) - size(deck%model%couplings) + n
+               coupling%card = deck%card%place%image
+               coupling%title = '*'//deck%card%name//', '//deck%source%words_of(deck%card%place)
+               call find_reference('REF NODE', deck, coupling%reference)
+               if (coupling%reference > 0) deck%mesh%coordinates(:, coupling%rotation) = &
+                  deck%mesh%coordinates(:, coupling%reference)
+            end associate
+         end if
+         select case (deck%card%name)
+         case ('RIGID BODY')
+            if (deck%card%has('ROT NODE')) call find_reference('ROT NODE', deck, &
+               deck%model%couplings(n)%rotation_node)
+            call build_rigid_body(deck, deck%model%couplings(n))
+         case ('COUPLING')
+            call deck%need_named('SURFACE', 'surface', deck%model%couplings(n)%surface)
+            call need_faces(deck%card%place_of('SURFACE'), 'it follows the reference node of '// &
+               'its *RIGID BODY', deck, deck%model%couplings(n)%surface)
+            if (.not. is_keyword(deck%cards, k + 1, 'KINEMATIC')) call deck%error(deck%card%place, &
+               '*KINEMATIC is missing: it must directly follow *COUPLING and name the degrees '// &
+               'of freedom')
+         case ('KINEMATIC')
+            if (is_keyword(deck%cards, k - 1, 'COUPLING')) then
+               call read_degrees(deck, deck%model%couplings(n))
+            else
+               call deck%error(deck%card%place, '*KINEMATIC must directly follow *COUPLING')
             end if
-            select case (card%name)
-            case ('RIGID BODY')
-               if (card%has('ROT NODE')) call find_reference('ROT NODE', card, deck, &
-                  deck%model%couplings(n)%rotation_node)
-               call build_rigid_body(card, deck, deck%model%couplings(n))
-            case ('COUPLING')
-               call deck%need_named(card, 'SURFACE', 'surface', deck%model%couplings(n)%surface)
-               call need_faces(card%place_of('SURFACE'), 'it follows the reference node of its '// &
-                  '*RIGID BODY', deck, deck%model%couplings(n)%surface)
-               if (.not. is_keyword(deck%cards, k + 1, 'KINEMATIC')) call deck%error(card%place, &
-                  '*KINEMATIC is missing: it must directly follow *COUPLING and name the '// &
-                  'degrees of freedom')
-            case ('KINEMATIC')
-               if (is_keyword(deck%cards, k - 1, 'COUPLING')) then
-                  call read_degrees(card, deck, deck%model%couplings(n))
-               else
-                  call deck%error(card%place, '*KINEMATIC must directly follow *COUPLING')
-               end if
-            case default
-               cycle
-            end select
-         end associate
+         case default
+            cycle
+         end select
       end do
       if (deck%error_count() > errors) call deck%lose('equation')
       call check_rigid_masters(deck)
    end subroutine build_couplings
 
    !> The node that a parameter names, which the card must have: its number, or a set of one node.
-   subroutine find_reference(parameter, card, deck, node)
+   subroutine find_reference(parameter, deck, node)
       character(*), intent(in) :: parameter
-      type(keyword_card_type), intent(in) :: card
       type(deck_type), intent(inout) :: deck
       integer, intent(out) :: node                         !! its index; 0 after an error
       character(:), allocatable :: name
@@ -234,16 +231,16 @@ contains
       logical :: is_number
 
       node = 0
-      call need_parameter(card, parameter, deck, name)
+      call need_parameter(deck%card, parameter, deck, name)
       if (len(name) == 0) return
-      associate (place => card%place_of(parameter), sets => deck%mesh%node_sets)
+      associate (place => deck%card%place_of(parameter), sets => deck%mesh%node_sets)
          call read_integer(name, number, is_number)
          if (is_number) then
             node = deck%node_index%find(number)
             if (node == 0) call deck%missing(place, 'there is no node '//name, 'node', name)
             return
          end if
-         call deck%need_named(card, parameter, 'node set', set)
+         call deck%need_named(parameter, 'node set', set)
          if (set == 0) return
          if (size(sets(set)%members) /= 1) then
             call deck%error(place, 'there is one reference node; node set '//name//' has '// &
@@ -255,20 +252,19 @@ contains
    end subroutine find_reference
 
    !> First and last degree of freedom on each data card; without one all follow.
-   subroutine read_degrees(card, deck, coupling)
-      type(keyword_card_type), intent(in) :: card
+   subroutine read_degrees(deck, coupling)
       type(deck_type), intent(inout) :: deck
       type(coupling_type), intent(inout) :: coupling
       real(dp) :: range(2)
       integer :: dof, j
       logical :: valid
 
-      if (size(card%data) == 0) then
+      if (size(deck%card%data) == 0) then
          coupling%follows = .true.
          call deck%note('*KINEMATIC without data: displacements along x and y follow')
       end if
-      do j = 1, size(card%data)
-         associate (data => card%data(j))
+      do j = 1, size(deck%card%data)
+         associate (data => deck%card%data(j))
             call read_row(data, '#first degree of freedom/#last degree of freedom?', deck, range, &
                valid)
             if (.not. valid) cycle
@@ -293,5 +289,86 @@ contains
          end associate
       end do
    end subroutine read_degrees
+
+   !> Builds all pre-tension sections, behind the couplings: their nodes are behind all others.
+   subroutine build_pre_tensions(deck)
+      type(deck_type), intent(inout) :: deck
+      type(coupling_type) :: section
+      integer, allocatable :: places(:)
+      integer :: k
+
+      places = cards_of(deck%cards, 'PRE-TENSION SECTION')
+      do k = 1, size(places)
+         call deck%open_card(places(k))
+         call build_section(deck, section)
+         if (section%opposite == 0) call deck%lose('equation')
+         if (section%opposite > 0) deck%model%couplings = [deck%model%couplings, section]
+      end do
+   end subroutine build_pre_tensions
+
+   !> Builds one section; without an opposite face after an error.
+   subroutine build_section(deck, section)
+      type(deck_type), intent(inout) :: deck
+      type(coupling_type), intent(out) :: section
+      character(:), allocatable :: fault
+      real(dp) :: given(3)
+      logical :: sound, valid
+
+      section%card = deck%card%place%image
+      section%title = '*PRE-TENSION SECTION, '//deck%source%words_of(deck%card%place)
+      call find_reference('NODE', deck, section%reference)
+      call deck%need_named('SURFACE', 'surface', section%surface)
+      call need_faces(deck%card%place_of('SURFACE'), 'a section lies between elements of a body', &
+         deck, section%surface)
+      valid = section%reference > 0 .and. section%surface > 0 .and. all(deck%element_valid)
+      if (valid) valid = size(deck%mesh%surfaces(section%surface)%faces) > 0
+      if (valid) section%normal = section_normal(section%surface, deck%mesh)
+      if (size(deck%card%data) > 0) then
+         call read_row(deck%card%data(1), 'x of the normal/y of the normal/z of the normal?', &
+            deck, given, sound)
+         valid = valid .and. sound
+         section%normal = unit_vector(given(:2))
+         if (sound .and. (norm2(section%normal) <= 0.0_dp .or. abs(given(3)) > 0.0_dp)) then
+            call deck%error(deck%card%data(1)%place(1), 'the normal of a section is a '// &
+               'direction in the plane, such as 0., 1., 0.')
+            valid = .false.
+         end if
+      end if
+      if (.not. valid) return
+      fault = ''
+      if (norm2(section%normal) <= 0.0_dp) fault = 'is closed: it has no normal'
+      if (any(deck%mesh%element_nodes == section%reference)) fault = 'has node '// &
+         to_text(deck%mesh%node_number(section%reference))//', which elements have, too: the '// &
+         'reference node is a node of its own'
+      if (any(deck%model%couplings%reference == section%reference)) fault = 'has node '// &
+         to_text(deck%mesh%node_number(section%reference))//', which is the reference node of '// &
+         'another card'
+      if (len(fault) == 0) call cut(deck, section, fault)
+      if (len(fault) > 0) call deck%error(deck%card%place, 'this section '//fault)
+   end subroutine build_section
+
+   subroutine cut(deck, section, fault)
+      type(deck_type), intent(inout) :: deck
+      type(coupling_type), intent(inout) :: section
+      character(:), allocatable, intent(out) :: fault
+      type(surface_type) :: other
+      integer :: first, last
+
+      call cut_mesh(section%surface, deck%mesh, other%faces, first, fault)
+      if (len(fault) > 0) return
+      last = size(deck%mesh%node_number)
+      ! No deck can name it.
+      other%name = section%title
+      other%card = section%card
+      deck%mesh%surfaces = [deck%mesh%surfaces, other]
+      section%opposite = size(deck%mesh%surfaces)
+      deck%face_places = [deck%face_places, deck%face_places(section%surface)]
+      deck%node_place = [deck%node_place, spread(deck%card%place, 1, last - first + 1)]
+      deck%node_valid = [deck%node_valid, spread(.true., 1, last - first + 1)]
+      deck%dropped = [deck%dropped, spread(.false., 1, last - first + 1)]
+      call deck%note(section%title//': the elements of its surface have the nodes '// &
+         to_text(deck%mesh%node_number(first))//' to '//to_text(deck%mesh%node_number(last))// &
+         ' there, which the deck does not have')
+   end subroutine cut
 
 end module deck_builder_equations

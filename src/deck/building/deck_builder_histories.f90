@@ -3,9 +3,9 @@
 !> points of its solid elements, into which it turns plane ones.
 module deck_builder_histories
    use amplitudes, only: amplitude_type
-   use card_parameters, only: choice, chosen, need_parameter, take_parameter
-   use card_values, only: decimal_comma, read_field, read_row, report_decimal_comma
-   use cards, only: data_card_type, keyword_card_type
+   use card_values, only: choice, chosen, need_parameter, take_parameter, decimal_comma, &
+      read_field, read_row, report_decimal_comma
+   use cards, only: data_card_type
    use deck_context, only: deck_type
    use deck_structure, only: cards_of
    use element_kinds, only: kind_count, plane_stress
@@ -42,30 +42,32 @@ contains
       places = cards_of(deck%cards, 'AMPLITUDE')
       allocate(deck%model%amplitudes(size(places)))
       do n = 1, size(places)
-         call deck%take_name(places(n), 'amplitude', deck%model%amplitudes(n)%name)
-         associate (card => deck%cards%keywords(places(n)), amplitude => deck%model%amplitudes(n))
-            amplitude%total_time = &
-               choice(card, 'TIME', 'STEP TIME/TOTAL TIME', deck, 'STEP TIME') == 'TOTAL TIME'
-            none = choice(card, 'VALUE', 'RELATIVE', deck, 'RELATIVE')
+         call deck%open_card(places(n))
+         call deck%take_name('amplitude', deck%model%amplitudes(n)%name)
+         associate (amplitude => deck%model%amplitudes(n))
+            amplitude%total_time = choice(deck%card, 'TIME', 'STEP TIME/TOTAL TIME', deck, &
+               'STEP TIME') == 'TOTAL TIME'
+            none = choice(deck%card, 'VALUE', 'RELATIVE', deck, 'RELATIVE')
             errors = deck%error_count()
-            kind = choice(card, 'DEFINITION', 'TABULAR/SMOOTH STEP/EQUALLY SPACED', deck, 'TABULAR')
+            kind = choice(deck%card, 'DEFINITION', 'TABULAR/SMOOTH STEP/EQUALLY SPACED', deck, &
+               'TABULAR')
             amplitude%smooth = kind == 'SMOOTH STEP'
             if (deck%error_count() > errors) then
                allocate(amplitude%times(1), amplitude%values(1), source=0.0_dp)
             else if (kind == 'EQUALLY SPACED') then
                begin = 0.0_dp
                interval = 1.0_dp
-               call take_parameter(card, 'BEGIN', deck, begin)
-               call need_parameter(card, 'FIXED INTERVAL', deck, none)
-               call take_parameter(card, 'FIXED INTERVAL', deck, interval, '>0')
-               amplitude%values = values_of(card, 'value', deck)
+               call take_parameter(deck%card, 'BEGIN', deck, begin)
+               call need_parameter(deck%card, 'FIXED INTERVAL', deck, none)
+               call take_parameter(deck%card, 'FIXED INTERVAL', deck, interval, '>0')
+               amplitude%values = values_of('value', deck)
                amplitude%times = [(begin + i*interval, i=0, size(amplitude%values) - 1)]
             else
-               if (card%has('FIXED INTERVAL')) call deck%error(card%place_of('FIXED INTERVAL'), &
-                  'FIXED INTERVAL= needs DEFINITION=EQUALLY SPACED')
-               if (card%has('BEGIN')) call deck%error(card%place_of('BEGIN'), 'BEGIN= needs '// &
-                  'DEFINITION=EQUALLY SPACED')
-               call read_points(card, deck, amplitude)
+               if (deck%card%has('FIXED INTERVAL')) call deck%error(deck%card%place_of('FIXED '// &
+                  'INTERVAL'), 'FIXED INTERVAL= needs DEFINITION=EQUALLY SPACED')
+               if (deck%card%has('BEGIN')) call deck%error(deck%card%place_of('BEGIN'), &
+                  'BEGIN= needs DEFINITION=EQUALLY SPACED')
+               call read_points(deck, amplitude)
             end if
          end associate
       end do
@@ -82,32 +84,32 @@ contains
       places = cards_of(deck%cards, 'TIME POINTS')
       allocate (deck%time_points(size(places)))
       do n = 1, size(places)
-         call deck%take_name(places(n), 'time points', deck%time_points(n)%name)
-         associate (card => deck%cards%keywords(places(n)), points => deck%time_points(n))
-            points%total_time = &
-               choice(card, 'TIME', 'STEP TIME/TOTAL TIME', deck, 'STEP TIME') == 'TOTAL TIME'
+         call deck%open_card(places(n))
+         call deck%take_name('time points', deck%time_points(n)%name)
+         associate (points => deck%time_points(n))
+            points%total_time = choice(deck%card, 'TIME', 'STEP TIME/TOTAL TIME', deck, 'STEP '// &
+               'TIME') == 'TOTAL TIME'
             allocate (points%times(0))
-            do j = 1, size(card%data)
+            do j = 1, size(deck%card%data)
                valid = .true.
-               if (card%has('GENERATE')) then
-                  call read_row(card%data(j), 'start/end/interval', deck, values, valid)
-                  if (valid .and. .not. (values(3) > 0.0_dp .and. &
-                     values(2) >= values(1))) call deck%error(card%data(j)%place(3), 'time '// &
-                     'points go up from the start to the end by a positive interval')
+               if (deck%card%has('GENERATE')) then
+                  call read_row(deck%card%data(j), 'start/end/interval', deck, values, valid)
+                  if (valid .and. .not. (values(3) > 0.0_dp .and. values(2) >= &
+                     values(1))) call deck%error(deck%card%data(j)%place(3), 'time points go '// &
+                     'up from the start to the end by a positive interval')
                   if (valid .and. values(3) > 0.0_dp) points%times = [points%times, (values(1) + &
                      i*values(3), i=0, floor((values(2) - values(1))/values(3) + 1.0e-6_dp))]
                end if
             end do
-            if (.not. card%has('GENERATE')) points%times = values_of(card, 'time', deck)
+            if (.not. deck%card%has('GENERATE')) points%times = values_of('time', deck)
             if (any(points%times(2:) <= points%times(:size(points%times) - 1))) call deck%error( &
-               card%place, 'time points must ascend')
+               deck%card%place, 'time points must ascend')
          end associate
       end do
    end subroutine build_time_points
 
    !> All fields of a card as numbers, without those that cannot be read.
-   function values_of(card, what, deck) result(values)
-      type(keyword_card_type), intent(in) :: card
+   function values_of(what, deck) result(values)
       character(*), intent(in) :: what
       type(deck_type), intent(inout) :: deck
       real(dp), allocatable :: values(:)
@@ -116,43 +118,42 @@ contains
       logical :: valid
 
       allocate (values(0))
-      do j = 1, size(card%data)
-         do i = 1, size(card%data(j)%fields)
+      do j = 1, size(deck%card%data)
+         do i = 1, size(deck%card%data(j)%fields)
             valid = .true.
-            call read_field(card%data(j), i, what, deck, value, valid)
+            call read_field(deck%card%data(j), i, what, deck, value, valid)
             if (valid) values = [values, value]
          end do
       end do
    end function values_of
 
    !> Pairs of time and value, any number of them a card.
-   subroutine read_points(card, deck, amplitude)
-      type(keyword_card_type), intent(in) :: card
+   subroutine read_points(deck, amplitude)
       type(deck_type), intent(inout) :: deck
       type(amplitude_type), intent(inout) :: amplitude
       integer :: errors, j, i, n
       logical :: valid
 
       n = 0
-      do j = 1, size(card%data)
-         n = n + (size(card%data(j)%fields) + 1)/2
+      do j = 1, size(deck%card%data)
+         n = n + (size(deck%card%data(j)%fields) + 1)/2
       end do
       allocate(amplitude%times(n), amplitude%values(n), source=0.0_dp)
       n = 0
-      do j = 1, size(card%data)
+      do j = 1, size(deck%card%data)
          errors = deck%error_count()
-         do i = 1, size(card%data(j)%fields), 2
+         do i = 1, size(deck%card%data(j)%fields), 2
             n = n + 1
             valid = .true.
-            call read_field(card%data(j), i, 'time', deck, amplitude%times(n), valid)
-            call read_field(card%data(j), i + 1, 'value', deck, amplitude%values(n), valid)
+            call read_field(deck%card%data(j), i, 'time', deck, amplitude%times(n), valid)
+            call read_field(deck%card%data(j), i + 1, 'value', deck, amplitude%values(n), valid)
             if (n < 2 .or. .not. valid) cycle
             if (amplitude%times(n) <= amplitude%times(n - 1)) call deck%error( &
-               card%data(j)%place(i), 'times must ascend')
+               deck%card%data(j)%place(i), 'times must ascend')
          end do
-         i = decimal_comma(card%data(j))
+         i = decimal_comma(deck%card%data(j))
          if (deck%error_count() == errors .or. i == 0) cycle
-         call report_decimal_comma(card%data(j), i, deck)
+         call report_decimal_comma(deck%card%data(j), i, deck)
          return
       end do
    end subroutine read_points
@@ -169,23 +170,20 @@ contains
 
       places = cards_of(deck%cards, 'INITIAL CONDITIONS')
       do k = 1, size(places)
-         associate (card => deck%cards%keywords(places(k)))
-            if (card%lacks('TYPE')) then
-               call deck%error(card%place, '*INITIAL CONDITIONS needs TYPE=TEMPERATURE or '// &
-                  'TYPE=STRESS')
-            end if
-            kind = choice(card, 'TYPE', initial_kinds, deck, '')
-            if (any(kind == [character(8) :: 'FIELD', 'SOLUTION', 'VELOCITY'])) call deck%note( &
-               '*INITIAL CONDITIONS, TYPE='//kind//' is ignored: nothing depends on it')
-            if (kind /= 'TEMPERATURE') cycle
-            do j = 1, size(card%data)
-               request%place = card%data(j)%place(1)
-               call read_row(card%data(j), '@node or set/temperature', deck, given, valid)
-               call deck%need_target('node', card%data(j), 1, request%target_type, valid)
-               request%value = given(2)
-               if (valid) call deck%temperatures%add(request)
-            end do
-         end associate
+         call deck%open_card(places(k))
+         if (deck%card%lacks('TYPE')) call deck%error(deck%card%place, '*INITIAL CONDITIONS '// &
+            'needs TYPE=TEMPERATURE or TYPE=STRESS')
+         kind = choice(deck%card, 'TYPE', initial_kinds, deck, '')
+         if (any(kind == [character(8) :: 'FIELD', 'SOLUTION', 'VELOCITY'])) call deck%note( &
+            '*INITIAL CONDITIONS, TYPE='//kind//' is ignored: nothing depends on it')
+         if (kind /= 'TEMPERATURE') cycle
+         do j = 1, size(deck%card%data)
+            request%place = deck%card%data(j)%place(1)
+            call read_row(deck%card%data(j), '@node or set/temperature', deck, given, valid)
+            call deck%need_target('node', deck%card%data(j), 1, request%target_type, valid)
+            request%value = given(2)
+            if (valid) call deck%temperatures%add(request)
+         end do
       end do
    end subroutine build_temperatures
 
@@ -196,28 +194,27 @@ contains
       integer :: j, k
 
       do k = 1, size(deck%cards%keywords)
-         associate (card => deck%cards%keywords(k))
-            if (card%name /= 'INITIAL CONDITIONS') cycle
-            if (chosen(card, 'TYPE', initial_kinds) /= 'STRESS' .or. card%flawed) cycle
-            if (.not. allocated(deck%mesh%initial_stress)) allocate (deck%mesh%initial_stress(4, &
-               size(deck%mesh%element_number)), source=0.0_dp)
-            points = spread(0, 1, size(deck%mesh%element_number))
-            do j = 1, size(card%data)
-               if (size(card%data(j)%fields) > most_fields) then
-                  call take_point(card%data(j), deck, points)
-               else
-                  call take_elements(card%data(j), deck)
-               end if
-            end do
-            do j = 1, size(points)
-               if (points(j) <= 0 .or. points(j) == solid_points(deck%mesh%element_kind(j))) cycle
-               call deck%error(card%place, 'element '//to_text(deck%mesh%element_number(j))//' '// &
-                  'has a stress at '//to_text(points(j))//' of the '// &
-                  to_text(solid_points(deck%mesh%element_kind(j)))//' integration points that '// &
-                  'it has in CalculiX, and none at the others; an element has one stress here')
-               exit
-            end do
-         end associate
+         call deck%open_card(k)
+         if (deck%card%name /= 'INITIAL CONDITIONS') cycle
+         if (chosen(deck%card, 'TYPE', initial_kinds) /= 'STRESS' .or. deck%card%flawed) cycle
+         if (.not. allocated(deck%mesh%initial_stress)) allocate (deck%mesh%initial_stress(4, &
+            size(deck%mesh%element_number)), source=0.0_dp)
+         points = spread(0, 1, size(deck%mesh%element_number))
+         do j = 1, size(deck%card%data)
+            if (size(deck%card%data(j)%fields) > most_fields) then
+               call take_point(deck%card%data(j), deck, points)
+            else
+               call take_elements(deck%card%data(j), deck)
+            end if
+         end do
+         do j = 1, size(points)
+            if (points(j) <= 0 .or. points(j) == solid_points(deck%mesh%element_kind(j))) cycle
+            call deck%error(deck%card%place, 'element '//to_text(deck%mesh%element_number(j))// &
+               ' has a stress at '//to_text(points(j))//' of the '//to_text(solid_points( &
+               deck%mesh%element_kind(j)))//' integration points that it has in CalculiX, and '// &
+               'none at the others; an element has one stress here')
+            exit
+         end do
       end do
    end subroutine build_initial_stresses
 

@@ -1,14 +1,12 @@
 !> *SURFACE INTERACTION with *FRICTION and *SURFACE BEHAVIOR, and the laws of its conductance.
 module deck_builder_interactions
-   use card_parameters, only: choice, take_parameter
-   use card_values, only: check_ascending, check_unneeded, read_row, read_rows
-   use cards, only: keyword_card_type
+   use card_values, only: choice, take_parameter, check_ascending, check_unneeded, read_row, &
+      read_rows
    use conductance_laws, only: conductance, conductance_law_type, law_jump, law_none, &
       table_jump, varies_with_temperature
    use contact_definitions, only: interaction_type
-   use deck_builder_gap_conductance, only: build_gap_conductance, is_of_clearance
-   use deck_builder_gap_heat, only: build_friction_heat, build_gap_radiation
-   use deck_builder_gap_laws, only: build_gap_law
+   use deck_builder_gap_laws, only: build_gap_conductance, is_of_clearance, build_friction_heat, &
+      build_gap_radiation, build_gap_law
    use deck_context, only: deck_type
    use deck_report, only: frictionless
    use deck_source, only: place_type
@@ -40,35 +38,33 @@ contains
       allocate(deck%model%interactions(size(cards_of(deck%cards, 'SURFACE INTERACTION'))))
       n = 0
       do k = 1, size(deck%cards%keywords)
-         associate (card => deck%cards%keywords(k))
-            if (card%name == 'STEP') exit
-            select case (card%name)
-            case ('SURFACE INTERACTION')
-               errors = deck%error_count()
-               n = n + 1
-               call deck%take_name(k, 'surface interaction', deck%model%interactions(n)%name)
-               law_place = card%place
-               if (size(card%data) > 0) then
-                  ! Out of the plane; Abaqus needs it for surfaces of nodes alone.
-                  call read_row(card%data(1), 'thickness? >0 =1', deck, thickness, valid)
-                  call deck%note('*SURFACE INTERACTION: the thickness is ignored: that of '// &
-                     '*SOLID SECTION is taken')
-               end if
-               interaction = deck%model%interactions(n)
-               call build_laws(k, deck, interaction, law_place)
-               deck%model%interactions(n) = interaction
-               if (deck%error_count() > errors .or. card%flawed) cycle
-               call check_law(card, law_place, deck%model%interactions(n), deck)
-            case ('FRICTION', 'GAP LAW', 'GAP CONDUCTANCE', 'GAP HEAT GENERATION', &
-               'GAP RADIATION', 'SURFACE BEHAVIOR', 'WEAR')
-               if (n == 0 .and. len(card%meant) == 0) then
-                  call deck%missing(card%place, '*'//card%name//' has no *SURFACE INTERACTION '// &
-                     'before it')
-               end if
-            case default
-               cycle
-            end select
-         end associate
+         call deck%open_card(k)
+         if (deck%card%name == 'STEP') exit
+         select case (deck%card%name)
+         case ('SURFACE INTERACTION')
+            errors = deck%error_count()
+            n = n + 1
+            call deck%take_name('surface interaction', deck%model%interactions(n)%name)
+            law_place = deck%card%place
+            if (size(deck%card%data) > 0) then
+               ! Out of the plane; Abaqus needs it for surfaces of nodes alone.
+               call read_row(deck%card%data(1), 'thickness? >0 =1', deck, thickness, valid)
+               call deck%note('*SURFACE INTERACTION: the thickness is ignored: that of *SOLID '// &
+                  'SECTION is taken')
+            end if
+            interaction = deck%model%interactions(n)
+            call build_laws(k, deck, interaction, law_place)
+            call deck%open_card(k)
+            deck%model%interactions(n) = interaction
+            if (deck%error_count() > errors .or. deck%card%flawed) cycle
+            call check_law(law_place, deck%model%interactions(n), deck)
+         case ('FRICTION', 'GAP LAW', 'GAP CONDUCTANCE', 'GAP HEAT GENERATION', 'GAP RADIATION', &
+            'SURFACE BEHAVIOR', 'WEAR')
+            if (n == 0 .and. len(deck%card%meant) == 0) call deck%missing(deck%card%place, '*'// &
+               deck%card%name//' has no *SURFACE INTERACTION before it')
+         case default
+            cycle
+         end select
       end do
    end subroutine build_interactions
 
@@ -92,79 +88,78 @@ contains
          says_pressure = says_pressure .or. deck%cards%keywords(k)%has('PRESSURE')
       end do
       do k = place + 1, size(deck%cards%keywords)
-         associate (card => deck%cards%keywords(k))
-            if (any(card%name == ends)) exit
-            if (size(card%data) == 0 .and. all(card%name /= [character(19) :: 'FRICTION', &
-               'GAP HEAT GENERATION', 'SURFACE BEHAVIOR', 'WEAR'])) cycle
-            if (any(card%name == ['GAP LAW        ', 'GAP CONDUCTANCE', 'GAP RADIATION  '])) then
-               law_place = card%data(1)%place(1)
-            end if
-            i = findloc(once == card%name, .true., dim=1)
-            if (i > 0 .and. taken(i) > 0) call deck%error(card%place, 'a second *'//card%name// &
-               ' in one surface interaction; the first is on '// &
-               deck%source%words_of(deck%cards%keywords(taken(i))%place)//': leave one of them out')
-            taken(i) = k
-            select case (card%name)
-            case ('FRICTION')
-               call build_friction(card, deck, interaction%friction)
-            case ('SURFACE BEHAVIOR')
-               call build_behavior(card, deck, interaction%overlap)
-            case ('WEAR')
-               call build_wear(card, deck, interaction%wear)
-            case ('GAP HEAT GENERATION')
-               call build_friction_heat(card, deck, interaction%heat)
-            case ('GAP LAW')
-               call build_gap_law(card, interaction%name, deck, interaction%law)
-            case ('GAP CONDUCTANCE')
-               if (is_of_clearance(card, says_pressure)) then
-                  call build_gap_conductance(card, interaction%name, .true., deck, interaction%law)
-               else
-                  if (table > 0) then
-                     call deck%error(card%place, 'a second *GAP CONDUCTANCE in one surface '// &
-                        'interaction')
-                     call build_gap_conductance(deck%cards%keywords(table), interaction%name, &
-                        .false., deck, interaction%law)
-                  end if
-                  table = k
+         call deck%open_card(k)
+         if (any(deck%card%name == ends)) exit
+         if (size(deck%card%data) == 0 .and. all(deck%card%name /= [character(19) :: 'FRICTION', &
+            'GAP HEAT GENERATION', 'SURFACE BEHAVIOR', 'WEAR'])) cycle
+         if (any(deck%card%name == ['GAP LAW        ', 'GAP CONDUCTANCE', &
+            'GAP RADIATION  '])) law_place = deck%card%data(1)%place(1)
+         i = findloc(once == deck%card%name, .true., dim=1)
+         if (i > 0 .and. taken(i) > 0) call deck%error(deck%card%place, 'a second *'// &
+            deck%card%name//' in one surface interaction; the first is on '//deck%source%words_of( &
+            deck%cards%keywords(taken(i))%place)//': leave one of them out')
+         taken(i) = k
+         select case (deck%card%name)
+         case ('FRICTION')
+            call build_friction(deck, interaction%friction)
+         case ('SURFACE BEHAVIOR')
+            call build_behavior(deck, interaction%overlap)
+         case ('WEAR')
+            call build_wear(deck, interaction%wear)
+         case ('GAP HEAT GENERATION')
+            call build_friction_heat(deck, interaction%heat)
+         case ('GAP LAW')
+            call build_gap_law(interaction%name, deck, interaction%law)
+         case ('GAP CONDUCTANCE')
+            if (is_of_clearance(deck%card, says_pressure)) then
+               call build_gap_conductance(interaction%name, .true., deck, interaction%law)
+            else
+               if (table > 0) then
+                  call deck%error(deck%card%place, 'a second *GAP CONDUCTANCE in one surface '// &
+                     'interaction')
+                  call deck%open_card(table)
+                  call build_gap_conductance(interaction%name, .false., deck, interaction%law)
                end if
-            case default
-               cycle
-            end select
-         end associate
+               table = k
+            end if
+         case default
+            cycle
+         end select
       end do
-      if (table > 0) call build_gap_conductance(deck%cards%keywords(table), interaction%name, &
-         .false., deck, interaction%law)
+      if (table > 0) then
+         call deck%open_card(table)
+         call build_gap_conductance(interaction%name, .false., deck, interaction%law)
+      end if
       if (interaction%overlap%is_soft() .and. interaction%wear%wears()) call deck%error( &
          deck%cards%keywords(taken(5))%place, '*WEAR is refused beside a *SURFACE BEHAVIOR '// &
          'whose faces overlap: worn faces are hard ones; leave one of them out')
-      if (taken(4) > 0) call build_gap_radiation(deck%cards%keywords(taken(4)), deck, &
-         interaction%law)
+      if (taken(4) == 0) return
+      call deck%open_card(taken(4))
+      call build_gap_radiation(deck, interaction%law)
    end subroutine build_laws
 
-   !> Reads one *WEAR: K, share of the slave, temperature.
-   subroutine build_wear(card, deck, wear)
-      type(keyword_card_type), intent(in) :: card
+   subroutine build_wear(deck, wear)
       type(deck_type), intent(inout) :: deck
       type(wear_law_type), intent(out) :: wear
-      real(dp) :: values(3, size(card%data))
+      real(dp) :: values(3, size(deck%card%data))
       integer :: k
       logical :: valid
 
-      if (card%has('CYCLES')) call deck%error(card%place_of('CYCLES'), 'CYCLES= belongs to '// &
-         '*WEAR in a step; leave it out here')
-      if (size(card%data) == 0) then
-         call deck%missing(card%place, '*WEAR needs a data card: K, share of the slave, '// &
+      if (deck%card%has('CYCLES')) call deck%error(deck%card%place_of('CYCLES'), 'CYCLES= '// &
+         'belongs to *WEAR in a step; leave it out here')
+      if (size(deck%card%data) == 0) then
+         call deck%missing(deck%card%place, '*WEAR needs a data card: K, share of the slave, '// &
             'temperature', 'data')
          return
       end if
-      call read_rows(card%data, 'K (depth per pressure and slip) >=0/share of the slave? >=0 '// &
-         '<=1 =1/temperature? =0', deck, values, valid)
+      call read_rows(deck%card%data, 'K (depth per pressure and slip) >=0/share of the slave? '// &
+         '>=0 <=1 =1/temperature? =0', deck, values, valid)
       if (.not. valid) return
-      call check_ascending(card%data, 3, 'temperatures', values(3, :), deck)
-      do k = 2, size(card%data)
-         if (abs(values(2, k) - values(2, 1)) > 0.0_dp) call deck%error(card%data(k)%place(2), &
-            'the share of the slave is one number for all temperatures; repeat that of the '// &
-            'first row')
+      call check_ascending(deck%card%data, 3, 'temperatures', values(3, :), deck)
+      do k = 2, size(deck%card%data)
+         if (abs(values(2, k) - values(2, 1)) > 0.0_dp) call deck%error( &
+            deck%card%data(k)%place(2), 'the share of the slave is one number for all '// &
+            'temperatures; repeat that of the first row')
       end do
       wear%rate = values(1, :)
       wear%temperature = values(3, :)
@@ -172,22 +167,21 @@ contains
    end subroutine build_wear
 
    !> Reads one *FRICTION: coefficient of friction, or ROUGH; TAUMAX= bounds the shear.
-   subroutine build_friction(card, deck, friction)
-      type(keyword_card_type), intent(in) :: card
+   subroutine build_friction(deck, friction)
       type(deck_type), intent(inout) :: deck
       type(friction_law_type), intent(out) :: friction
       real(dp) :: values(2)
       logical :: valid
 
-      call take_parameter(card, 'TAUMAX', deck, friction%largest_shear, '>0')
-      if (card%has('ROUGH')) then
+      call take_parameter(deck%card, 'TAUMAX', deck, friction%largest_shear, '>0')
+      if (deck%card%has('ROUGH')) then
          friction%coefficient = rough_coefficient
-         if (card%has('TAUMAX')) call deck%error(card%place_of('ROUGH'), 'TAUMAX= and ROUGH '// &
-            'exclude each other: rough faces do not slip')
-         if (size(card%data) > 0) call deck%error(card%data(1)%place(1), '*FRICTION, ROUGH has '// &
-            'no data')
-      else if (size(card%data) > 0) then
-         associate (data => card%data(1), coefficient => friction%coefficient)
+         if (deck%card%has('TAUMAX')) call deck%error(deck%card%place_of('ROUGH'), 'TAUMAX= '// &
+            'and ROUGH exclude each other: rough faces do not slip')
+         if (size(deck%card%data) > 0) call deck%error(deck%card%data(1)%place(1), '*FRICTION, '// &
+            'ROUGH has no data')
+      else if (size(deck%card%data) > 0) then
+         associate (data => deck%card%data(1), coefficient => friction%coefficient)
             call read_row(data, 'coefficient of friction >=0/stick slope?', deck, values, valid)
             coefficient = values(1)
             ! With a larger one a pressure is lost in the last places of mu times it.
@@ -207,8 +201,7 @@ contains
    end subroutine build_friction
 
    !> Warns of a law that jumps, where the gap closes or where its table of clearances ends.
-   subroutine check_law(card, law_place, interaction, deck)
-      type(keyword_card_type), intent(in) :: card
+   subroutine check_law(law_place, interaction, deck)
       type(place_type), intent(in) :: law_place      ! where the last of its laws is
       type(interaction_type), intent(in) :: interaction
       type(deck_type), intent(inout) :: deck
@@ -217,11 +210,11 @@ contains
       real(dp) :: open, closed
       character(:), allocatable :: advice, there
 
-      if (table_jump(interaction%law) > 0.0_dp) call deck%warning(card%place, 'the conductance '// &
-         'of '//interaction%name//' falls from '//to_text(table_jump(interaction%law))//' to 0 '// &
-         'where the gap exceeds that of the last row, '// &
-         to_text(maxval(interaction%law%open_table%abscissa))//'; an increment in which a gap '// &
-         'would stay there has no solution: end the table with a row of conductance 0')
+      if (table_jump(interaction%law) > 0.0_dp) call deck%warning(deck%card%place, 'the '// &
+         'conductance of '//interaction%name//' falls from '//to_text(table_jump( &
+         interaction%law))//' to 0 where the gap exceeds that of the last row, '//to_text(maxval( &
+         interaction%law%open_table%abscissa))//'; an increment in which a gap would stay '// &
+         'there has no solution: end the table with a row of conductance 0')
       if (radiation_ends(interaction%law)) call deck%warning(law_place, 'faces of '// &
          interaction%name//' radiate where they are open and not where they are closed: the '// &
          'conductance jumps by that of radiation where the gap closes; TYPE=CMY and '// &
@@ -244,45 +237,44 @@ contains
    end subroutine check_law
 
    !> Reads one *SURFACE BEHAVIOR: a law of faces that overlap; parameters of a penalty are ignored.
-   subroutine build_behavior(card, deck, law)
-      type(keyword_card_type), intent(in) :: card
+   subroutine build_behavior(deck, law)
       type(deck_type), intent(inout) :: deck
       type(overlap_law_type), intent(out) :: law           !! of hard faces, or of soft ones
       character(:), allocatable :: kind
-      real(dp) :: rows(2, size(card%data)), values(2)
+      real(dp) :: rows(2, size(deck%card%data)), values(2)
       logical :: valid
 
-      kind = to_upper(card%text('PRESSURE-OVERCLOSURE'))
+      kind = to_upper(deck%card%text('PRESSURE-OVERCLOSURE'))
       if (kind == 'TIED') then
-         call deck%error(card%place_of('PRESSURE-OVERCLOSURE'), 'PRESSURE-OVERCLOSURE='//kind// &
-            ' is refused: tied faces do not open; take *TIE')
+         call deck%error(deck%card%place_of('PRESSURE-OVERCLOSURE'), 'PRESSURE-OVERCLOSURE='// &
+            kind//' is refused: tied faces do not open; take *TIE')
          return
       end if
-      kind = choice(card, 'PRESSURE-OVERCLOSURE', 'LINEAR/HARD/EXPONENTIAL/TABULAR', deck, '')
+      kind = choice(deck%card, 'PRESSURE-OVERCLOSURE', 'LINEAR/HARD/EXPONENTIAL/TABULAR', deck, '')
       select case (kind)
       case ('EXPONENTIAL', 'TABULAR')
-         if (size(card%data) == 0) then
-            call deck%error(card%place, '*SURFACE BEHAVIOR, PRESSURE-OVERCLOSURE='//kind// &
+         if (size(deck%card%data) == 0) then
+            call deck%error(deck%card%place, '*SURFACE BEHAVIOR, PRESSURE-OVERCLOSURE='//kind// &
                ' needs data: one card c0, p0, or rows of pressure, overlap')
          else if (kind == 'EXPONENTIAL') then
             ! The pressure at the clearance c0 is a hundredth of p0.
-            call read_row(card%data(1), 'clearance c0 >0/pressure p0 >0', deck, values, valid)
+            call read_row(deck%card%data(1), 'clearance c0 >0/pressure p0 >0', deck, values, valid)
             law%clearance = values(1)
             law%touching_pressure = values(2)
-            if (size(card%data) > 1) call deck%error(card%data(2)%place(1), &
-               'an exponential law has one card: c0, p0')
+            if (size(deck%card%data) > 1) call deck%error(deck%card%data(2)%place(1), 'an '// &
+               'exponential law has one card: c0, p0')
          else
             ! Rows of pressure, from 0 on, and overlap.
-            call read_rows(card%data, 'pressure/overlap', deck, rows, valid)
+            call read_rows(deck%card%data, 'pressure/overlap', deck, rows, valid)
             law%pressure = rows(1, :)
             law%overlap = rows(2, :)
             if (.not. valid) return
-            if (abs(law%pressure(1)) > 0.0_dp) call deck%error(card%data(1)%place(1), 'the '// &
-               'first row must have pressure 0, and the overlap from which faces press')
-            if (size(card%data) == 1) call deck%error(card%data(1)%place(1), 'a table of '// &
-               'pressure and overlap needs two rows or more')
-            call check_ascending(card%data, 1, 'pressures', law%pressure, deck)
-            call check_ascending(card%data, 2, 'overlaps', law%overlap, deck)
+            if (abs(law%pressure(1)) > 0.0_dp) call deck%error(deck%card%data(1)%place(1), &
+               'the first row must have pressure 0, and the overlap from which faces press')
+            if (size(deck%card%data) == 1) call deck%error(deck%card%data(1)%place(1), 'a '// &
+               'table of pressure and overlap needs two rows or more')
+            call check_ascending(deck%card%data, 1, 'pressures', law%pressure, deck)
+            call check_ascending(deck%card%data, 2, 'overlaps', law%overlap, deck)
          end if
       case default
          call deck%note('*SURFACE BEHAVIOR is ignored: contact is exact')

@@ -1,8 +1,7 @@
 !> *BOUNDARY, *CLOAD, *DLOAD, ... -> requests, applied when all is read.
 module deck_builder_loads
-   use card_parameters, only: choice
-   use card_values, only: check_extra, read_field, read_row
-   use cards, only: data_card_type, keyword_card_type
+   use card_values, only: choice, check_extra, read_field, read_row
+   use cards, only: data_card_type
    use deck_builder_element_loads, only: build_element_load
    use deck_context, only: deck_type
    use kinds, only: dp
@@ -33,73 +32,72 @@ module deck_builder_loads
 contains
 
    !> Takes one card of loads or prescribed values.
-   subroutine build_load_card(card, step, deck)
-      type(keyword_card_type), intent(in) :: card
+   subroutine build_load_card(step, deck)
       integer, intent(in) :: step                          !! index of the step, 0 before the first
       type(deck_type), intent(inout) :: deck
       type(request_type) :: request
       character(:), allocatable :: kind
       integer :: j, errors, film_amplitude
 
-      if (step == 0 .and. card%name /= 'BOUNDARY') return
+      if (step == 0 .and. deck%card%name /= 'BOUNDARY') return
       errors = deck%error_count()
       request%step = step
       film_amplitude = 0
-      kind = choice(card, 'TYPE', 'DISPLACEMENT', deck, 'DISPLACEMENT')
-      call read_operation(card, step, deck)
-      call deck%take_named(card, 'AMPLITUDE', 'amplitude', request%amplitude)
-      request%keeps = card%has('FIXED')
-      if (request%keeps .and. request%amplitude > 0) call deck%error(card%place_of('AMPLITUDE'), &
-         'FIXED holds the values at the start of the step, which no amplitude changes; leave '// &
-         'one of the two out')
-      call deck%take_named(card, 'FILM AMPLITUDE', 'amplitude', film_amplitude)
+      kind = choice(deck%card, 'TYPE', 'DISPLACEMENT', deck, 'DISPLACEMENT')
+      call read_operation(step, deck)
+      call deck%take_named('AMPLITUDE', 'amplitude', request%amplitude)
+      request%keeps = deck%card%has('FIXED')
+      if (request%keeps .and. request%amplitude > 0) call deck%error(deck%card%place_of( &
+         'AMPLITUDE'), 'FIXED holds the values at the start of the step, which no amplitude '// &
+         'changes; leave one of the two out')
+      call deck%take_named('FILM AMPLITUDE', 'amplitude', film_amplitude)
       if (film_amplitude > 0) then
          associate (film => deck%model%amplitudes(film_amplitude))
-            if (any(film%values < 0.0_dp)) call deck%error(card%place_of('FILM AMPLITUDE'), &
+            if (any(film%values < 0.0_dp)) call deck%error(deck%card%place_of('FILM AMPLITUDE'), &
                'amplitude '//film%name//' becomes negative ('//to_text(minval(film%values))// &
                '), but a film coefficient must not; give factors of at least 0')
          end associate
       end if
-      if (any(card%name == ['FILM ', 'SFILM'])) call note_film(card, &
-         deck%model%steps(step)%ramped, deck)
-      do j = 1, size(card%data)
-         request%place = card%data(j)%place(1)
-         if (card%name == 'BOUNDARY') then
-            call build_boundary(card%data(j), request, deck)
+      if (any(deck%card%name == ['FILM ', 'SFILM'])) call note_film(deck%model%steps(step)%ramped, &
+         deck)
+      do j = 1, size(deck%card%data)
+         request%place = deck%card%data(j)%place(1)
+         if (deck%card%name == 'BOUNDARY') then
+            call build_boundary(deck%card%data(j), request, deck)
             cycle
          end if
          deck%load_cards = deck%load_cards + 1
          request%card = deck%load_cards
-         select case (card%name)
+         select case (deck%card%name)
          case ('CLOAD', 'CFLUX', 'TEMPERATURE')
-            call build_nodal_load(card%name, card%data(j), request, deck)
+            call build_nodal_load(deck%card%name, deck%card%data(j), request, deck)
          case default
-            call build_element_load(card%name, card%data(j), request, film_amplitude, deck)
+            call build_element_load(deck%card%name, deck%card%data(j), request, film_amplitude, &
+               deck)
          end select
       end do
-      if (card%name == 'BOUNDARY' .and. (card%flawed .or. deck%error_count() > errors)) call &
-         deck%lose('boundary')
+      if (deck%card%name == 'BOUNDARY' .and. (deck%card%flawed .or. deck%error_count() > &
+         errors)) call deck%lose('boundary')
    end subroutine build_load_card
 
    !> OP=NEW on the first card of its keyword in a step ends what former steps gave by it.
-   subroutine read_operation(card, step, deck)
-      type(keyword_card_type), intent(in) :: card
+   subroutine read_operation(step, deck)
       integer, intent(in) :: step
       type(deck_type), intent(inout) :: deck
       character(:), allocatable :: operation
       logical :: first
 
-      operation = choice(card, 'OP', 'MOD/NEW', deck, 'MOD')
-      first = deck%load_step(card%known) < step
-      deck%load_step(card%known) = step
+      operation = choice(deck%card, 'OP', 'MOD/NEW', deck, 'MOD')
+      first = deck%load_step(deck%card%known) < step
+      deck%load_step(deck%card%known) = step
       if (operation /= 'NEW' .or. step == 0) return
       if (.not. first) then
-         call deck%warning(card%place_of('OP'), 'OP=NEW is ignored: it must be on the first *'// &
-            card%name//' of a step')
+         call deck%warning(deck%card%place_of('OP'), 'OP=NEW is ignored: it must be on the '// &
+            'first *'//deck%card%name//' of a step')
          return
       end if
       associate (ends => deck%model%steps(step)%ends_loads)
-         select case (card%name)
+         select case (deck%card%name)
          case ('BOUNDARY')
             deck%model%steps(step)%ends_boundaries = .true.
          case ('CLOAD')
@@ -127,20 +125,19 @@ contains
    end subroutine read_operation
 
    !> Notes what coefficient and sink of a film do where one of them has no amplitude.
-   subroutine note_film(card, ramped, deck)
-      type(keyword_card_type), intent(in) :: card
+   subroutine note_film(ramped, deck)
       logical, intent(in) :: ramped
       type(deck_type), intent(inout) :: deck
       character(:), allocatable :: coefficient, sink
 
-      if (card%has('AMPLITUDE') .and. card%has('FILM AMPLITUDE')) return
+      if (deck%card%has('AMPLITUDE') .and. deck%card%has('FILM AMPLITUDE')) return
       coefficient = 'acts fully at once'
       sink = coefficient
       if (ramped) coefficient = 'ramps over the step'
-      if (card%has('FILM AMPLITUDE')) coefficient = 'follows '//to_upper(card%text( &
+      if (deck%card%has('FILM AMPLITUDE')) coefficient = 'follows '//to_upper(deck%card%text( &
          'FILM AMPLITUDE'))
-      if (card%has('AMPLITUDE')) sink = 'follows '//to_upper(card%text('AMPLITUDE'))
-      call deck%note('*'//card%name//': the coefficient '//coefficient//', the sink '// &
+      if (deck%card%has('AMPLITUDE')) sink = 'follows '//to_upper(deck%card%text('AMPLITUDE'))
+      call deck%note('*'//deck%card%name//': the coefficient '//coefficient//', the sink '// &
          'temperature '//sink)
    end subroutine note_film
 
@@ -199,8 +196,7 @@ contains
       end if
    end subroutine build_nodal_load
 
-   !> Takes one data card: node or set, first and last degree of freedom, value; or node or set and
-   !> the name of a support.
+   !> Node or set, first and last degree of freedom, value; or node or set and name of a support.
    subroutine build_boundary(data, request, deck)
       type(data_card_type), intent(in) :: data
       type(request_type), intent(inout) :: request         !! step, amplitude, place
@@ -328,8 +324,7 @@ contains
       end select
    end subroutine add_support
 
-   !> Takes a request for reference nodes of sections, which have degrees of freedom 3, 4 and 5 in
-   !> generalized plane strain.
+   !> Takes a request for reference nodes of sections, which have degrees of freedom 3, 4 and 5.
    subroutine take_along_z(data, dof, request, deck, taken, valid)
       type(data_card_type), intent(in) :: data
       integer, intent(in) :: dof

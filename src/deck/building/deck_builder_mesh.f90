@@ -2,8 +2,7 @@
 !> the curves of a drawing: they are no elements of the mesh, but their sets name nodes, and the
 !> faces under them.
 module deck_builder_mesh
-   use card_parameters, only: need_parameter
-   use card_values, only: check_extra, check_unneeded, may_be_decimals, read_field
+   use card_values, only: need_parameter, check_extra, check_unneeded, may_be_decimals, read_field
    use cards, only: data_card_type, keyword_card_type
    use deck_context, only: deck_type, plane_by_element
    use deck_reader, only: keyword_of
@@ -14,7 +13,7 @@ module deck_builder_mesh
    use element_types, only: drawn_line, line_kind, line_node_count, take_element_type
    use kinds, only: dp
    use mesh, only: add_node, extent_of, nodes_per_element
-   use sorting, only: repeated
+   use sorting, only: repeated, sort_order
    use text, only: to_text, to_upper
    implicit none
    private
@@ -36,6 +35,7 @@ contains
    subroutine build_nodes(deck)
       type(deck_type), intent(inout) :: deck
       real(dp), allocatable :: heights(:)
+      real(dp) :: place(2)
       integer, allocatable :: places(:)
       integer :: j, k, n
       logical :: told
@@ -67,29 +67,18 @@ contains
       call deck%node_index%build(deck%mesh%node_number)
       ! Nodes that no card can name: for the turn about y of the REF NODE of a section, then for the
       ! rotation of each coupling and rigid body.
-      do k = 1, merge(size(deck%cards%keywords), 0, n > 0)
-         associate (card => deck%cards%keywords(k))
-            if (card%name == 'SOLID SECTION' .and. card%has('REF NODE')) call add_unnamed(card, &
-               deck)
-         end associate
-      end do
-      do k = 1, merge(size(deck%cards%keywords), 0, n > 0)
-         if (all(deck%cards%keywords(k)%name /= [character(10) :: 'COUPLING', 'RIGID BODY'])) cycle
-         call add_unnamed(deck%cards%keywords(k), deck)
+      if (n == 0) return
+      place = deck%mesh%coordinates(:, 1)
+      places = [cards_of(deck%cards, 'COUPLING'), cards_of(deck%cards, 'RIGID BODY')]
+      places = [cards_of(deck%cards, 'SOLID SECTION'), places(sort_order(places))]
+      do k = 1, size(places)
+         call deck%open_card(places(k))
+         if (deck%card%name == 'SOLID SECTION' .and. .not. deck%card%has('REF NODE')) cycle
+         call add_node(deck%mesh, place)
+         deck%node_place = [deck%node_place, deck%card%place]
+         deck%node_valid = [deck%node_valid, .true.]
       end do
    end subroutine build_nodes
-
-   !> Adds a node of a card, in the place of the first one.
-   subroutine add_unnamed(card, deck)
-      type(keyword_card_type), intent(in) :: card
-      type(deck_type), intent(inout) :: deck
-      real(dp) :: place(2)
-
-      place = deck%mesh%coordinates(:, 1)
-      call add_node(deck%mesh, place)
-      deck%node_place = [deck%node_place, card%place]
-      deck%node_valid = [deck%node_valid, .true.]
-   end subroutine add_unnamed
 
    !> Of a node that is given more than once the last place counts, as in Abaqus and CalculiX.
    subroutine drop_repeated(deck)
@@ -128,8 +117,7 @@ contains
       type(data_card_type), intent(in) :: data
       type(deck_type), intent(inout) :: deck
       integer, intent(out) :: number
-      real(dp), intent(out) :: coordinates(2)
-      real(dp), intent(out) :: z
+      real(dp), intent(out) :: coordinates(2), z
       logical, intent(out) :: valid                 ! whether the coordinates are known
       character(*), parameter :: names = 'xy'
       integer :: i
@@ -145,9 +133,7 @@ contains
             ': 0 is used')
       end do
       call read_field(data, 4, 'z?', deck, z, valid)
-      if (data%has(4)) then
-         call deck%note('*NODE: third coordinates are ignored')
-      end if
+      if (data%has(4)) call deck%note('*NODE: third coordinates are ignored')
       call check_extra(data, 7, 'number, x, y', deck)
       if (size(data%fields) > 4) call deck%note('*NODE: numbers after the third coordinate are '// &
          'ignored')
@@ -224,10 +210,9 @@ contains
       e = 0
       line = 0
       do k = 1, size(places)
-         associate (card => deck%cards%keywords(places(k)))
-            if (of_lines(k)) call add_lines(card, deck, line)
-            if (.not. of_lines(k)) call add_elements(card, deck, e)
-         end associate
+         call deck%open_card(places(k))
+         if (of_lines(k)) call add_lines(deck, line)
+         if (.not. of_lines(k)) call add_elements(deck, e)
       end do
       k = findloc(of_lines, .true., dim=1)
       if (n == 0 .and. k > 0) call deck%missing(deck%cards%keywords(places(k))%place_of('TYPE'), &
@@ -252,55 +237,52 @@ contains
       call deck%member_index%build(numbers)
    end subroutine build_elements
 
-   !> Adds the lines of a card.
-   subroutine add_lines(card, deck, n)
-      type(keyword_card_type), intent(in) :: card
+   subroutine add_lines(deck, n)
       type(deck_type), intent(inout) :: deck
       integer, intent(inout) :: n        ! lines so far
       character(:), allocatable :: name
       integer :: j
       logical :: valid
 
-      name = to_upper(card%text('TYPE'))
+      name = to_upper(deck%card%text('TYPE'))
       if (line_kind(name) == drawn_line) call deck%note('*ELEMENT, TYPE='//name//': lines are '// &
          'ignored, except for sets and surfaces that are made of them')
-      do j = 1, size(card%data)
+      do j = 1, size(deck%card%data)
          n = n + 1
          deck%line_kind(n) = line_kind(name)
-         deck%line_place(n) = card%data(j)%place(1)
-         call read_number(card%data(j), 'element', deck, deck%line_number(n))
-         call read_nodes(card%data(j), 'line, '//to_text(line_node_count(name))//' nodes', &
-            card%place, deck, deck%line_nodes(:line_node_count(name), n), valid)
+         deck%line_place(n) = deck%card%data(j)%place(1)
+         call read_number(deck%card%data(j), 'element', deck, deck%line_number(n))
+         call read_nodes(deck%card%data(j), 'line, '//to_text(line_node_count(name))//' nodes', &
+            deck%card%place, deck, deck%line_nodes(:line_node_count(name), n), valid)
       end do
    end subroutine add_lines
 
    !> Adds the elements of a card; those of a type that cannot be used keep their numbers only.
-   subroutine add_elements(card, deck, n)
-      type(keyword_card_type), intent(in) :: card
+   subroutine add_elements(deck, n)
       type(deck_type), intent(inout) :: deck
       integer, intent(inout) :: n        ! elements so far
       character(:), allocatable :: layout, message, name, note
       integer :: corners, j, kind, midsides, plane
 
-      call need_parameter(card, 'TYPE', deck, name)
+      call need_parameter(deck%card, 'TYPE', deck, name)
       call take_element_type(name, kind, plane, message, note)
-      if (len(name) > 0 .and. len(message) > 0) call deck%error(card%place_of('TYPE'), message)
+      if (len(name) > 0 .and. len(message) > 0) call deck%error(deck%card%place_of('TYPE'), message)
       if (len(note) > 0) call deck%note(note)
-      if (plane == plane_stress .and. deck%plane == plane_by_element) call &
-         warn_of_gmsh(card%place_of('TYPE'), deck)
+      if (plane == plane_stress .and. deck%plane == plane_by_element) call warn_of_gmsh( &
+         deck%card%place_of('TYPE'), deck)
       if (deck%plane /= plane_by_element .and. plane /= generalized_strain) plane = deck%plane
       corners = element_corner_count(kind)
       midsides = element_node_count(kind) - corners
       layout = 'element, '//to_text(corners)//' corners'
       if (midsides > 0) layout = layout//', '//to_text(midsides)//' midside nodes'
-      do j = 1, size(card%data)
+      do j = 1, size(deck%card%data)
          n = n + 1
-         deck%element_place(n) = card%data(j)%place(1)
-         call read_number(card%data(j), 'element', deck, deck%mesh%element_number(n))
+         deck%element_place(n) = deck%card%data(j)%place(1)
+         call read_number(deck%card%data(j), 'element', deck, deck%mesh%element_number(n))
          if (len(message) > 0) cycle
          deck%mesh%element_kind(n) = kind
          deck%mesh%element_plane(n) = plane
-         call read_nodes(card%data(j), layout, card%place, deck, &
+         call read_nodes(deck%card%data(j), layout, deck%card%place, deck, &
             deck%mesh%element_nodes(:corners + midsides, n), deck%element_valid(n))
       end do
    end subroutine add_elements
@@ -312,10 +294,8 @@ contains
       integer :: i
 
       do i = place%image - 1, 1, -1
-         associate (line => deck%source%images(i)%value)
-            if (index(line, gmsh_comment) == 1) exit
-            if (keyword_of(line) == 'NODE') return
-         end associate
+         if (index(deck%source%images(i)%value, gmsh_comment) == 1) exit
+         if (keyword_of(deck%source%images(i)%value) == 'NODE') return
       end do
       if (i > 0) call deck%warning(place, 'gmsh calls all elements CPS, plane stress; say what '// &
          'is meant by *OPTIONS, PLANE=STRAIN, STRESS or AXISYMMETRIC', 'gmsh')

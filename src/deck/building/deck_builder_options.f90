@@ -1,7 +1,6 @@
 !> *HEADING, *OPTIONS, *PHYSICAL CONSTANTS, *SOLVER and *REFINE.
 module deck_builder_options
-   use card_parameters, only: choice, need_parameter, needed_choice, take_parameter
-   use cards, only: keyword_card_type
+   use card_values, only: choice, need_parameter, needed_choice, take_parameter
    use controls, only: solver_by_size, solver_mumps, solver_skyline, tail_full, tail_sparse
    use deck_builder_rigid, only: need_faces
    use deck_context, only: deck_type
@@ -25,6 +24,7 @@ contains
    !> Reads *HEADING, *OPTIONS, *PHYSICAL CONSTANTS, *SOLVER and *REFINE.
    subroutine build_options(deck)
       type(deck_type), intent(inout) :: deck
+      character(:), allocatable :: solver, tail
       integer :: k
 
       deck%model%heading = ''
@@ -35,89 +35,71 @@ contains
       deck%model%units%time = ''
       deck%model%solver = solver_by_size
       do k = 1, size(deck%cards%keywords)
-         associate (card => deck%cards%keywords(k))
-            select case (card%name)
-            case ('HEADING')
-               ! That of a file that is included names a mesh.
-               if (size(card%data) == 0 .or. len(deck%model%heading) > 0 .or. &
-                  deck%source%file(card%place%image) /= 1) cycle
-               deck%model%heading = card%data(1)%fields(1)%text
-            case ('OPTIONS')
-               call build_option_card(card, deck)
-            case ('PHYSICAL CONSTANTS')
-               call take_parameter(card, 'ABSOLUTE ZERO', deck, deck%model%constants%absolute_zero)
-               call take_parameter(card, 'STEFAN BOLTZMANN', deck, &
-                  deck%model%constants%stefan_boltzmann, '>0')
-               deck%model%constants%has_absolute_zero = card%has('ABSOLUTE ZERO')
-               deck%model%constants%has_radiation = deck%model%constants%has_absolute_zero .and. &
-                  card%has('STEFAN BOLTZMANN')
-            case ('SOLVER')
-               call build_solver(card, deck)
-            case ('REFINE')
-               if (card%has('SURFACE') .or. card%has('ELSET')) cycle
-               if (card%has('DISTANCE')) call deck%error(card%place_of('DISTANCE'), 'DISTANCE= '// &
-                  'is measured from a surface or a set: give SURFACE= or ELSET= too')
-               if (deck%levels_place%image > 0) call deck%error(card%place, 'a second *REFINE '// &
-                  'of the whole model')
-               deck%levels_place = card%place_of('LEVELS')
-               call take_levels(card, deck, deck%levels)
-            case ('CONTROLS')
-               call deck%note('*'//card%name//' is ignored')
-            case default
-               cycle
-            end select
-         end associate
+         call deck%open_card(k)
+         select case (deck%card%name)
+         case ('HEADING')
+            ! That of a file that is included names a mesh.
+            if (size(deck%card%data) == 0 .or. len(deck%model%heading) > 0 .or. deck%source%file( &
+               deck%card%place%image) /= 1) cycle
+            deck%model%heading = deck%card%data(1)%fields(1)%text
+         case ('OPTIONS')
+            call build_option_card(deck)
+         case ('PHYSICAL CONSTANTS')
+            call take_parameter(deck%card, 'ABSOLUTE ZERO', deck, &
+               deck%model%constants%absolute_zero)
+            call take_parameter(deck%card, 'STEFAN BOLTZMANN', deck, &
+               deck%model%constants%stefan_boltzmann, '>0')
+            deck%model%constants%has_absolute_zero = deck%card%has('ABSOLUTE ZERO')
+            deck%model%constants%has_radiation = deck%model%constants%has_absolute_zero .and. &
+               deck%card%has('STEFAN BOLTZMANN')
+         case ('SOLVER')
+            tail = choice(deck%card, 'TAIL', 'FULL/SPARSE', deck, '')
+            if (tail == 'FULL') deck%model%tail = tail_full
+            if (tail == 'SPARSE') deck%model%tail = tail_sparse
+            if (deck%card%has('TAIL') .and. .not. deck%card%has('TYPE')) cycle
+            solver = needed_choice(deck%card, 'TYPE', 'SKYLINE/MUMPS', deck)
+            if (solver == 'SKYLINE') deck%model%solver = solver_skyline
+            if (solver == 'MUMPS') deck%model%solver = solver_mumps
+         case ('REFINE')
+            if (deck%card%has('SURFACE') .or. deck%card%has('ELSET')) cycle
+            if (deck%card%has('DISTANCE')) call deck%error(deck%card%place_of('DISTANCE'), &
+               'DISTANCE= is measured from a surface or a set: give SURFACE= or ELSET= too')
+            if (deck%levels_place%image > 0) call deck%error(deck%card%place, 'a second '// &
+               '*REFINE of the whole model')
+            deck%levels_place = deck%card%place_of('LEVELS')
+            call take_levels(deck, deck%levels)
+         case default
+            cycle
+         end select
       end do
    end subroutine build_options
 
-   !> Reads *SOLVER.
-   subroutine build_solver(card, deck)
-      type(keyword_card_type), intent(in) :: card
+   subroutine build_option_card(deck)
       type(deck_type), intent(inout) :: deck
-      character(:), allocatable :: solver, tail
+      character(:), allocatable :: plane, rest
+      character(len(deck%card%text('UNITS'))) :: words(5)
+      integer :: blank, i
 
-      tail = choice(card, 'TAIL', 'FULL/SPARSE', deck, '')
-      if (tail == 'FULL') deck%model%tail = tail_full
-      if (tail == 'SPARSE') deck%model%tail = tail_sparse
-      if (card%has('TAIL') .and. .not. card%has('TYPE')) return
-      solver = needed_choice(card, 'TYPE', 'SKYLINE/MUMPS', deck)
-      if (solver == 'SKYLINE') deck%model%solver = solver_skyline
-      if (solver == 'MUMPS') deck%model%solver = solver_mumps
-   end subroutine build_solver
-
-   subroutine build_option_card(card, deck)
-      type(keyword_card_type), intent(in) :: card
-      type(deck_type), intent(inout) :: deck
-      character(:), allocatable :: plane
-
-      plane = choice(card, 'PLANE', 'STRAIN/STRESS/AXISYMMETRIC', deck, '')
+      plane = choice(deck%card, 'PLANE', 'STRAIN/STRESS/AXISYMMETRIC', deck, '')
       if (plane == 'STRAIN') deck%plane = plane_strain
       if (plane == 'STRESS') deck%plane = plane_stress
       if (plane == 'AXISYMMETRIC') deck%plane = axisymmetric
-      if (card%has('ORDER')) then
-         deck%model%order_place = card%place_of('ORDER')
-         call take_parameter(card, 'ORDER', deck, deck%order)
+      if (deck%card%has('ORDER')) then
+         deck%model%order_place = deck%card%place_of('ORDER')
+         call take_parameter(deck%card, 'ORDER', deck, deck%order)
          if (all(deck%order /= [1, 2])) call deck%error(deck%model%order_place, 'ORDER= must '// &
             'be 1 (elements without midside nodes) or 2 (elements as they are)')
          if (deck%order /= 1) deck%order = 2
       end if
-      if (card%has('ERRORS')) deck%model%uncertainty = uncertainty_named(choice(card, 'ERRORS', &
-         uncertainty_words, deck, 'LAST'))
-      if (card%has('UNITS')) call build_units(card, deck)
-      if (.not. card%has('LOAD')) return
-      deck%load_set = to_upper(card%text('LOAD'))
-      deck%load_place = card%place_of('LOAD')
-   end subroutine build_option_card
-
-   !> UNITS="length stress power temperature time", the last three of which may be left out.
-   subroutine build_units(card, deck)
-      type(keyword_card_type), intent(in) :: card
-      type(deck_type), intent(inout) :: deck
-      character(:), allocatable :: rest
-      character(len(card%text('UNITS'))) :: words(5)
-      integer :: i, blank
-
-      rest = trim(adjustl(card%text('UNITS')))
+      if (deck%card%has('ERRORS')) deck%model%uncertainty = uncertainty_named(choice(deck%card, &
+         'ERRORS', uncertainty_words, deck, 'LAST'))
+      if (deck%card%has('LOAD')) then
+         deck%load_set = to_upper(deck%card%text('LOAD'))
+         deck%load_place = deck%card%place_of('LOAD')
+      end if
+      if (.not. deck%card%has('UNITS')) return
+      ! "length stress power temperature time", the last three of which may be left out.
+      rest = trim(adjustl(deck%card%text('UNITS')))
       words = ''
       do i = 1, size(words)
          blank = index(rest//' ', ' ')
@@ -125,7 +107,7 @@ contains
          rest = trim(adjustl(rest(blank:)))
       end do
       if (len(rest) > 0 .or. words(2) == '') then
-         call deck%error(card%place_of('UNITS'), 'UNITS= has two to five words: length, '// &
+         call deck%error(deck%card%place_of('UNITS'), 'UNITS= has two to five words: length, '// &
             'stress, power, temperature, time')
          return
       end if
@@ -134,20 +116,19 @@ contains
       deck%model%units%power = trim(words(3))
       deck%model%units%temperature = trim(words(4))
       deck%model%units%time = trim(words(5))
-   end subroutine build_units
+   end subroutine build_option_card
 
    !> Reads LEVELS= of *REFINE; 0 after an error.
-   subroutine take_levels(card, deck, levels)
-      type(keyword_card_type), intent(in) :: card          !! the *REFINE
+   subroutine take_levels(deck, levels)
       type(deck_type), intent(inout) :: deck
       integer, intent(inout) :: levels                     !! 0 before
       character(:), allocatable :: text
 
-      call need_parameter(card, 'LEVELS', deck, text)
-      call take_parameter(card, 'LEVELS', deck, levels)
+      call need_parameter(deck%card, 'LEVELS', deck, text)
+      call take_parameter(deck%card, 'LEVELS', deck, levels)
       if (levels >= 0 .and. levels <= most_levels) return
-      call deck%error(card%place_of('LEVELS'), 'LEVELS= must lie between 0 and '// &
-         to_text(most_levels))
+      call deck%error(deck%card%place_of('LEVELS'), 'LEVELS= must lie between 0 and '//to_text( &
+         most_levels))
       levels = 0
    end subroutine take_levels
 
@@ -208,25 +189,24 @@ contains
 
       allocate(deck%model%regions(0))
       do k = 1, size(deck%cards%keywords)
-         associate (card => deck%cards%keywords(k))
-            if (card%name /= 'REFINE') cycle
-            if (.not. (card%has('SURFACE') .or. card%has('ELSET'))) cycle
-            region = refined_region_type(card=card%place%image)
-            call take_levels(card, deck, region%levels)
-            if (card%has('SURFACE') .and. card%has('ELSET')) then
-               call deck%error(card%place_of('ELSET'), '*REFINE takes SURFACE= or ELSET=, not '// &
-                  'both; give a card for each')
-            else if (card%has('SURFACE')) then
-               call deck%need_named(card, 'SURFACE', 'surface', surface)
-               call need_faces(card%place_of('SURFACE'), 'name the face that touches it', deck, &
-                  surface)
-               region%surfaces = [surface]
-            else
-               call deck%need_element_set(card, region%set)
-            end if
-            call take_parameter(card, 'DISTANCE', deck, region%distance, '>0')
-            deck%model%regions = [deck%model%regions, region]
-         end associate
+         call deck%open_card(k)
+         if (deck%card%name /= 'REFINE') cycle
+         if (.not. (deck%card%has('SURFACE') .or. deck%card%has('ELSET'))) cycle
+         region = refined_region_type(card=deck%card%place%image)
+         call take_levels(deck, region%levels)
+         if (deck%card%has('SURFACE') .and. deck%card%has('ELSET')) then
+            call deck%error(deck%card%place_of('ELSET'), '*REFINE takes SURFACE= or ELSET=, '// &
+               'not both; give a card for each')
+         else if (deck%card%has('SURFACE')) then
+            call deck%need_named('SURFACE', 'surface', surface)
+            call need_faces(deck%card%place_of('SURFACE'), 'name the face that touches it', deck, &
+               surface)
+            region%surfaces = [surface]
+         else
+            call deck%need_element_set(region%set)
+         end if
+         call take_parameter(deck%card, 'DISTANCE', deck, region%distance, '>0')
+         deck%model%regions = [deck%model%regions, region]
       end do
    end subroutine build_regions
 

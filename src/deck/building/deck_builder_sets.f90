@@ -1,11 +1,10 @@
 !> *NSET and *ELSET, NSET= on *NODE and ELSET= on *ELEMENT -> named sets; *SURFACE -> sets of faces.
 module deck_builder_sets
-   use card_parameters, only: choice, need_parameter, surface_kinds
-   use card_values, only: check_extra, read_field, read_row
+   use card_values, only: choice, need_parameter, surface_kinds, check_extra, read_field, read_row
    use cards, only: data_card_type, keyword_card_type
-   use deck_builder_drawings, only: build_drawing, build_line_surface, is_rigid_side, lines_of
+   use deck_builder_rigid, only: build_drawing, build_line_surface, is_rigid_side, lines_of, &
+      need_faces
    use deck_builder_mesh, only: is_line_card
-   use deck_builder_rigid, only: need_faces
    use deck_context, only: deck_type, item_index_type, place_list_type
    use deck_structure, only: cards_of
    use element_kinds, only: element_corner_count, side_nodes
@@ -31,41 +30,38 @@ module deck_builder_sets
 
 contains
 
-   !> Builds all sets of nodes or of elements, lines among them; a name that is on several cards
-   !> is one set.
+   !> Builds all sets of nodes, or of elements and lines; a name on several cards is one set.
    subroutine build_sets(noun, deck)
       character(*), intent(in) :: noun                           !! node or element
       type(deck_type), intent(inout) :: deck
       type(set_type), allocatable :: sets(:)
       type(draft_type) :: draft
       character(:), allocatable :: parameter, definer
-      integer :: count, first(2), i, j, k, kind
+      integer :: count, first(2), i, j, k, kind, n
 
-      parameter = merge('NSET ', 'ELSET', noun == 'node')
-      parameter = trim(parameter)
+      parameter = trim(merge('NSET ', 'ELSET', noun == 'node'))
       definer = to_upper(noun)
       allocate(draft%items(size(deck%cards%keywords)), draft%members(size(deck%cards%keywords)))
       draft%numbers = deck%node_index
       if (noun == 'element') draft%numbers = deck%member_index
       first = [0, size(deck%mesh%element_number)]
       do k = 1, size(deck%cards%keywords)
-         associate (card => deck%cards%keywords(k))
-            if (card%name == definer) then
-               kind = merge(2, 1, is_line_card(card))
-               count = size(card%data)
-               if (card%has(parameter)) then
-                  call open_set(card, parameter, deck, draft, i)
-                  if (noun == 'node') then
-                     call draft%members(i)%add(nodes_of(card, draft%numbers))
-                  else
-                     call draft%members(i)%add(first(kind) + [(j, j=1, count)])
-                  end if
+         call deck%open_card(k)
+         if (deck%card%name == definer) then
+            kind = merge(2, 1, is_line_card(deck%card))
+            count = size(deck%card%data)
+            if (deck%card%has(parameter)) then
+               call open_set(parameter, deck, draft, i)
+               if (noun == 'node') then
+                  call draft%members(i)%add(nodes_of(deck%card, draft%numbers))
+               else
+                  call draft%members(i)%add(first(kind) + [(j, j=1, count)])
                end if
-               first(kind) = first(kind) + count
-            else if (card%name == parameter) then
-               call build_set(card, deck, draft)
             end if
-         end associate
+            first(kind) = first(kind) + count
+         else if (deck%card%name == parameter) then
+            call build_set(deck, draft)
+         end if
       end do
       allocate(sets(draft%sets))
       do i = 1, draft%sets
@@ -75,26 +71,18 @@ contains
       if (noun == 'node') then
          call move_alloc(sets, deck%mesh%node_sets)
       else
-         call split_line_sets(size(deck%mesh%element_number), sets, deck%line_sets)
+         ! The elements stay, the lines, whose indexes are behind theirs, are kept beside them.
+         n = size(deck%mesh%element_number)
+         allocate (deck%line_sets(size(sets)))
+         do i = 1, size(sets)
+            deck%line_sets(i)%members = pack(sets(i)%members, sets(i)%members > n) - n
+            if (size(deck%line_sets(i)%members) == 0) cycle
+            sets(i)%members = pack(sets(i)%members, sets(i)%members <= n)
+            sets(i)%of_lines = size(sets(i)%members) == 0
+         end do
          call move_alloc(sets, deck%mesh%element_sets)
       end if
    end subroutine build_sets
-
-   !> Parts sets of elements and lines: the elements stay, the lines are kept beside them.
-   subroutine split_line_sets(elements, sets, line_sets)
-      integer, intent(in) :: elements                             ! number of elements
-      type(set_type), intent(inout) :: sets(:)  ! members are elements and, behind them, lines
-      type(set_type), allocatable, intent(out) :: line_sets(:)    ! indexes of lines; may be empty
-      integer :: i
-
-      allocate (line_sets(size(sets)))
-      do i = 1, size(sets)
-         line_sets(i)%members = pack(sets(i)%members, sets(i)%members > elements) - elements
-         if (size(line_sets(i)%members) == 0) cycle
-         sets(i)%members = pack(sets(i)%members, sets(i)%members <= elements)
-         sets(i)%of_lines = size(sets(i)%members) == 0
-      end do
-   end subroutine split_line_sets
 
    !> The nodes that a *NODE card gives, of which some may be given again elsewhere.
    function nodes_of(card, numbers) result(nodes)
@@ -113,8 +101,7 @@ contains
    end function nodes_of
 
    !> Finds the set that a card names, or begins it.
-   subroutine open_set(card, parameter, deck, draft, set)
-      type(keyword_card_type), intent(in) :: card
+   subroutine open_set(parameter, deck, draft, set)
       character(*), intent(in) :: parameter
       type(deck_type), intent(inout) :: deck
       type(draft_type), intent(inout) :: draft
@@ -123,21 +110,19 @@ contains
       integer :: number
       logical :: is_number
 
-      name = to_upper(card%text(parameter))
+      name = to_upper(deck%card%text(parameter))
       set = deck%index_of(draft%numbers%noun//' set', name)
       if (set > 0) return
       call read_integer(name, number, is_number)
-      if (is_number) call deck%error(card%place_of(parameter), 'the name of a set must not be '// &
-         'a number')
+      if (is_number) call deck%error(deck%card%place_of(parameter), 'the name of a set must '// &
+         'not be a number')
       call deck%add_name(draft%numbers%noun//' set', name)
       draft%sets = draft%sets + 1
       set = draft%sets
       draft%items(set)%name = name
    end subroutine open_set
 
-   !> Reads one *NSET or *ELSET card.
-   subroutine build_set(card, deck, draft)
-      type(keyword_card_type), intent(in) :: card
+   subroutine build_set(deck, draft)
       type(deck_type), intent(inout) :: deck
       type(draft_type), intent(inout) :: draft
       character(:), allocatable :: name
@@ -146,22 +131,23 @@ contains
       integer :: set, j, i, k, known
       logical :: valid
 
-      call need_parameter(card, card%name, deck, name)
+      call need_parameter(deck%card, deck%card%name, deck, name)
       if (len(name) == 0) return
       known = draft%sets
-      call open_set(card, card%name, deck, draft, set)
+      call open_set(deck%card%name, deck, draft, set)
       if (draft%numbers%noun == 'node') then
-         call find_nodes(card, deck, nodes)
+         call find_nodes(deck, nodes)
          call draft%members(set)%add(nodes)
       end if
-      do j = 1, size(card%data)
-         if (card%has('GENERATE')) then
-            call generate(card%data(j), deck, draft, set)
+      do j = 1, size(deck%card%data)
+         if (deck%card%has('GENERATE')) then
+            call generate(deck%card%data(j), deck, draft, set)
             cycle
          end if
-         do i = 1, size(card%data(j)%fields)
-            if (is_pattern(card%data(j)%text(i))) then
-               call deck%find_matches(card%data(j), i, draft%numbers%noun//' set', others, known)
+         do i = 1, size(deck%card%data(j)%fields)
+            if (is_pattern(deck%card%data(j)%text(i))) then
+               call deck%find_matches(deck%card%data(j), i, draft%numbers%noun//' set', others, &
+                  known)
                do k = 1, size(others)
                   if (others(k) /= set) call draft%members(set)%add(unique_sorted( &
                      draft%members(others(k))%numbers()))
@@ -169,7 +155,7 @@ contains
                cycle
             end if
             valid = .true.
-            call deck%need_target(draft%numbers%noun, card%data(j), i, other, valid, known)
+            call deck%need_target(draft%numbers%noun, deck%card%data(j), i, other, valid, known)
             if (other%item > 0) call draft%members(set)%add([other%item])
             ! Each member once, lest sets that hold a set twice double.
             if (other%set > 0) call draft%members(set)%add(unique_sorted( &
@@ -179,8 +165,7 @@ contains
    end subroutine build_set
 
    !> The nodes of the element set or the surface that an *NSET card names; some repeatedly.
-   subroutine find_nodes(card, deck, nodes)
-      type(keyword_card_type), intent(in) :: card
+   subroutine find_nodes(deck, nodes)
       type(deck_type), intent(inout) :: deck
       integer, allocatable, intent(out) :: nodes(:)
       type(number_list_type) :: found
@@ -188,13 +173,13 @@ contains
 
       set = 0
       surface = 0
-      call deck%take_named(card, 'ELSET', 'element set', set)
+      call deck%take_named('ELSET', 'element set', set)
       if (set > 0) then
          call found%add([deck%mesh%element_nodes(:, deck%mesh%element_sets(set)%members)])
          call found%add([deck%line_nodes(:, deck%line_sets(set)%members)])
       end if
-      call deck%take_named(card, 'SURFACE', 'surface', surface)
-      call need_faces(card%place_of('SURFACE'), 'name its reference node', deck, surface)
+      call deck%take_named('SURFACE', 'surface', surface)
+      call need_faces(deck%card%place_of('SURFACE'), 'name its reference node', deck, surface)
       if (surface > 0) then
          associate (faces => deck%mesh%surfaces(surface)%faces)
             do i = 1, size(faces, 2)
@@ -259,15 +244,14 @@ contains
       places = cards_of(deck%cards, 'SURFACE')
       allocate(deck%mesh%surfaces(size(places)), deck%face_places(size(places)))
       do n = 1, size(places)
-         call deck%take_name(places(n), 'surface', deck%mesh%surfaces(n)%name)
-         call build_surface(deck%cards%keywords(places(n)), deck, deck%mesh%surfaces(n), &
-            deck%face_places(n))
+         call deck%open_card(places(n))
+         call deck%take_name('surface', deck%mesh%surfaces(n)%name)
+         call build_surface(deck, deck%mesh%surfaces(n), deck%face_places(n))
       end do
    end subroutine build_surfaces
 
    !> Builds one surface; a face that is named twice counts once, in the order of elements.
-   subroutine build_surface(card, deck, surface, places)
-      type(keyword_card_type), intent(in) :: card
+   subroutine build_surface(deck, surface, places)
       type(deck_type), intent(inout) :: deck
       type(surface_type), intent(inout) :: surface
       type(place_list_type), intent(inout) :: places   ! receives where each face is named
@@ -278,17 +262,17 @@ contains
       integer :: face, i, j, errors
       logical :: valid
 
-      surface%card = card%place%image
+      surface%card = deck%card%place%image
       errors = deck%error_count()
-      kind = choice(card, 'TYPE', surface_kinds, deck, 'ELEMENT')
+      kind = choice(deck%card, 'TYPE', surface_kinds, deck, 'ELEMENT')
       allocate(surface%faces(2, 0))
       ! The data of another type have other fields; node sets are made of surfaces, too.
       if (deck%error_count() > errors .or. kind == 'NODE') return
       if (kind == 'SEGMENTS') then
-         call build_drawing(card, deck, surface)
-      else if (size(card%data) > 0) then
-         if (is_rigid_side(card%data(1), deck)) then
-            call build_line_surface(card, deck, surface)
+         call build_drawing(deck, surface)
+      else if (size(deck%card%data) > 0) then
+         if (is_rigid_side(deck%card%data(1), deck)) then
+            call build_line_surface(deck, surface)
             kind = 'RIGID'
          end if
       end if
@@ -296,31 +280,32 @@ contains
          if (.not. allocated(surface%drawing)) call deck%lose('surface')
          return
       end if
-      do j = 1, size(card%data)
+      do j = 1, size(deck%card%data)
          ! A line, or an element set that has some, without a face.
-         if (.not. card%data(j)%has(2) .and. size(lines_of(card%data(j)%text(1), deck)) > 0) then
-            call add_line_faces(card%data(j), deck, found)
+         if (.not. deck%card%data(j)%has(2) .and. size(lines_of(deck%card%data(j)%text(1), &
+            deck)) > 0) then
+            call add_line_faces(deck%card%data(j), deck, found)
             call named%add(spread(j, 1, found%count - named%count))
             cycle
          end if
          valid = .true.
-         if (is_pattern(card%data(j)%text(1))) then
-            call deck%find_matches(card%data(j), 1, 'element set', sets)
+         if (is_pattern(deck%card%data(j)%text(1))) then
+            call deck%find_matches(deck%card%data(j), 1, 'element set', sets)
             elements = [(deck%mesh%element_sets(sets(i))%members, i=1, size(sets))]
             valid = size(sets) > 0
          else
-            call deck%need_target('element', card%data(j), 1, target, valid)
+            call deck%need_target('element', deck%card%data(j), 1, target, valid)
             if (valid) elements = target%members(deck%mesh%element_sets)
          end if
-         if (.not. card%data(j)%has(2)) then
-            if (valid) call add_free_faces(card%data(j), elements, deck, found)
+         if (.not. deck%card%data(j)%has(2)) then
+            if (valid) call add_free_faces(deck%card%data(j), elements, deck, found)
             call named%add(spread(j, 1, found%count - named%count))
             cycle
          end if
-         call read_face(card%data(j), deck, face, valid)
-         call check_extra(card%data(j), 2, 'element or set, face', deck)
+         call read_face(deck%card%data(j), deck, face, valid)
+         call check_extra(deck%card%data(j), 2, 'element or set, face', deck)
          if (.not. valid) cycle
-         call check_face(card%data(j), elements, face, deck, valid)
+         call check_face(deck%card%data(j), elements, face, deck, valid)
          if (.not. valid) cycle
          call found%add(4*elements + face - 1)
          call named%add(spread(j, 1, size(elements)))
@@ -330,7 +315,7 @@ contains
       order = pack(order, [(i == 1 .or. keys(order(i)) /= keys(order(max(i - 1, 1))), &
          i=1, size(order))])
       cards_of_faces = named%numbers()
-      places%items = [(card%data(cards_of_faces(order(i)))%place(1), i=1, size(order))]
+      places%items = [(deck%card%data(cards_of_faces(order(i)))%place(1), i=1, size(order))]
       surface%faces = reshape([keys(order)/4, mod(keys(order), 4) + 1], [2, size(order)], &
          order=[2, 1])
    end subroutine build_surface
@@ -359,8 +344,7 @@ contains
          'no side here is free: each belongs to another element, too')
    end subroutine add_free_faces
 
-   !> Adds the faces under the lines of a set; the first line under which there is none, or one
-   !> inside a body, is an error.
+   !> Adds the faces under lines; the first line with none, or one inside a body, is an error.
    subroutine add_line_faces(data, deck, found)
       type(data_card_type), intent(in) :: data
       type(deck_type), intent(inout) :: deck
@@ -368,7 +352,7 @@ contains
       type(element_sides_type) :: sides
       integer, allocatable :: members(:), uses(:)
       character(:), allocatable :: fault
-      integer :: i, bad, side
+      integer :: i, bad, ends(3), side
 
       call check_extra(data, 1, 'element set of lines', deck)
       if (.not. all(deck%element_valid)) return
@@ -376,13 +360,15 @@ contains
       allocate (uses(size(members)), source=0)
       sides = find_sides(deck%mesh)
       do i = 1, size(members)
-         side = side_of_line(deck%line_nodes(:, members(i)), sides)
+         ends = deck%line_nodes(:, members(i))
+         if (any(ends(:2) == 0)) cycle
+         ! The midside node of a line is its second or its third.
+         side = sides%index_of(ends([1, 3, 2]))
+         if (side == 0 .and. ends(3) > 0) side = sides%index_of(ends)
          if (side == 0) cycle
-         associate (element => sides%elements(1, side))
-            uses(i) = count(sides%elements(:, side) > 0)
-            if (uses(i) == 1) call found%add([4*element + &
-               findloc(sides%of_element(:, element), side, dim=1) - 1])
-         end associate
+         uses(i) = count(sides%elements(:, side) > 0)
+         if (uses(i) == 1) call found%add([4*sides%elements(1, side) + findloc(sides%of_element(:, &
+            sides%elements(1, side)), side, dim=1) - 1])
       end do
       if (all(uses == 1)) return
       bad = findloc(uses == 1, .false., dim=1)
@@ -393,28 +379,14 @@ contains
       associate (nodes => deck%line_nodes(:, members(bad)))
          if (any(nodes(:2) == 0)) return
          i = findloc(nodes > 0, .true., dim=1, back=.true.)
-         if (all(deck%mesh%element_nodes /= nodes(1) .and. deck%mesh%element_nodes /= nodes(2))) &
-            then
-            fault = fault//', nor do its nodes: its curve is the side of no surface in the '// &
-               'drawing, such as a second one at the place of one that is; take that one'
-         end if
+         if (all(deck%mesh%element_nodes /= nodes(1) .and. deck%mesh%element_nodes /= &
+            nodes(2))) fault = fault//', nor do its nodes: its curve is the side of no surface '// &
+            'in the drawing, such as a second one at the place of one that is; take that one'
          call deck%error(data%place(1), 'line '//to_text(deck%line_number(members(bad)))//' '// &
             'from node '//to_text(deck%mesh%node_number(nodes(1)))//' to '// &
             to_text(deck%mesh%node_number(nodes(i)))//' '//fault)
       end associate
    end subroutine add_line_faces
-
-   !> The side that has the nodes of a line, whose midside node is its second or its third; 0 where
-   !> there is none.
-   pure integer function side_of_line(nodes, sides) result(side)
-      integer, intent(in) :: nodes(3)
-      type(element_sides_type), intent(in) :: sides
-
-      side = 0
-      if (any(nodes(:2) == 0)) return
-      side = sides%index_of(nodes([1, 3, 2]))
-      if (side == 0 .and. nodes(3) > 0) side = sides%index_of(nodes)
-   end function side_of_line
 
    !> Every element of a data card has the face.
    subroutine check_face(data, elements, face, deck, valid)
@@ -436,7 +408,6 @@ contains
       end do
    end subroutine check_face
 
-   !> Reads the second field of a card as S and the number of a face.
    subroutine read_face(data, deck, face, valid)
       type(data_card_type), intent(in) :: data
       type(deck_type), intent(inout) :: deck

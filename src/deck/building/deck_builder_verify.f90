@@ -1,8 +1,7 @@
 !> *VERIFY -> checks of the results, *ACCURACY -> targets of the uncertainties.
 module deck_builder_verify
    use accuracy_targets, only: accuracy_target_type
-   use card_parameters, only: needed_choice, take_parameter
-   use card_values, only: check_extra, read_field, read_row
+   use card_values, only: needed_choice, take_parameter, check_extra, read_field, read_row
    use cards, only: data_card_type
    use equations, only: constrained_nodes, equation_nodes, section_nodes
    use deck_builder_steps, only: increment_rounding
@@ -39,43 +38,44 @@ contains
       n = 0
       places = cards_of(deck%cards, 'VERIFY')
       do k = 1, size(places)
-         associate (card => deck%cards%keywords(places(k)))
-            kind = needed_choice(card, 'KIND', 'ANALYTIC/EXTERNAL/LEGACY/FIGURE/REGRESSION/NONE', &
-               deck)
-            do j = 1, size(card%data)
-               n = n + 1
-               associate (data => card%data(j), check => deck%model%verifications(n))
-                  check%kind = kind
-                  check%source = card%text('SOURCE')
-                  check%line = data%end%image
-                  check%address = deck%source%address_of(data%end)
-                  check%quantity = ''
-                  check%where = data%text(2)
-                  fields = [data%place(1), data%place(2)]
-                  check%columns = fields%column
-                  call read_quantity(data, deck%verifiable, '', deck, quantity, check%level)
-                  if (quantity > 0) then
-                     check%quantity = trim(deck%verifiable(quantity)%name)
-                     if (allocated(check%level)) call check_level(data, &
-                        deck%verifiable(quantity), deck)
-                     call check_where(data, deck%verifiable(quantity)%kind, deck, check)
-                  end if
-                  if (deck%analyses_sound) call read_when(data, deck, check)
-                  check%expects = kind /= 'NONE'
-                  if (.not. check%expects) then
-                     call check_extra(data, 3, 'quantity, where, when', deck)
-                     cycle
-                  end if
-                  call read_row(data, '@quantity/@where/@when/value/tolerance >=0/@REL or ABS', &
-                     deck, values, valid)
-                  check%value = values(4)
-                  check%tolerance = values(5)
-                  check%relative = is_relative(data, 6, deck)
-                  if (valid .and. check%relative .and. .not. abs(check%value) > 0.0_dp) call &
-                     deck%warning(data%place(4), 'relative to 0 only 0 itself passes; give ABS')
-               end associate
-            end do
-         end associate
+         call deck%open_card(places(k))
+         kind = needed_choice(deck%card, 'KIND', &
+            'ANALYTIC/EXTERNAL/LEGACY/FIGURE/REGRESSION/NONE', deck)
+         do j = 1, size(deck%card%data)
+            n = n + 1
+            associate (data => deck%card%data(j), check => deck%model%verifications(n))
+               check%kind = kind
+               check%source = deck%card%text('SOURCE')
+               check%line = data%end%image
+               check%address = deck%source%paths(deck%source%file(check%line))%value//':'// &
+                  to_text(deck%source%line(check%line))
+               check%quantity = ''
+               check%where = data%text(2)
+               fields = [data%place(1), data%place(2)]
+               check%columns = fields%column
+               call read_quantity(data, deck%verifiable, '', deck, quantity, check%level)
+               if (quantity > 0) then
+                  check%quantity = trim(deck%verifiable(quantity)%name)
+                  if (allocated(check%level)) call check_level(data, deck%verifiable(quantity), &
+                     deck)
+                  call check_where(data, deck%verifiable(quantity)%kind, deck, check)
+               end if
+               if (deck%analyses_sound) call read_when(data, deck, check)
+               check%expects = kind /= 'NONE'
+               if (.not. check%expects) then
+                  call check_extra(data, 3, 'quantity, where, when', deck)
+                  cycle
+               end if
+               call read_row(data, '@quantity/@where/@when/value/tolerance >=0/@REL or ABS', deck, &
+                  values, valid)
+               check%value = values(4)
+               check%tolerance = values(5)
+               check%relative = is_relative(data, 6, deck)
+               if (valid .and. check%relative .and. .not. abs(check%value) > &
+                  0.0_dp) call deck%warning(data%place(4), 'relative to 0 only 0 itself '// &
+                  'passes; give ABS')
+            end associate
+         end do
       end do
       if (deck%analyses_sound) call check_heat_quantities(deck)
    end subroutine build_verifications
@@ -113,8 +113,7 @@ contains
       call deck%error(data%place(i), ''''//data%text(i)//''' is neither REL nor ABS')
    end function is_relative
 
-   !> The first field: index into known quantities, 0 after an error; of checks it may say which
-   !> value the quantity reaches.
+   !> The first field: index into known quantities, 0 after an error; perhaps the value it reaches.
    subroutine read_quantity(data, known, refusal, deck, quantity, level)
       type(data_card_type), intent(in) :: data
       type(quantity_type), intent(in) :: known(:)
@@ -233,10 +232,9 @@ contains
       type(data_card_type), intent(in) :: data
       integer, intent(in) :: kind
       type(deck_type), intent(inout) :: deck
-      logical :: used(0:size(deck%mesh%node_number))
+      logical :: used(0:size(deck%mesh%node_number)), valid
       type(target_type) :: target
       integer, allocatable :: nodes(:)
-      logical :: valid
 
       valid = .true.
       call deck%need_target('node', data, 2, target, valid)
@@ -336,24 +334,23 @@ contains
 
       places = cards_of(deck%cards, 'ACCURACY')
       do k = 1, size(places)
-         associate (card => deck%cards%keywords(places(k)))
-            if (k == 1) then
-               allocate (deck%model%accuracy%targets(0))
-               if (size(deck%model%contacts) == 0) call deck%missing(card%place, 'the deck has '// &
-                  'no *CONTACT PAIR: there is no quantity that *ACCURACY could name')
-               if (any(deck%model%steps%continuation%is_on)) then
-                  call deck%error(card%place, '*ACCURACY needs numerical uncertainties, which '// &
-                     'branches of *CONTINUATION do not have; refine by *REFINE')
-               else if (deck%model%uncertainty == uncertainty_no) then
-                  call deck%error(card%place, '*ACCURACY needs numerical uncertainties; leave '// &
-                     'ERRORS=NO out of *OPTIONS')
-               end if
+         call deck%open_card(places(k))
+         if (k == 1) then
+            allocate (deck%model%accuracy%targets(0))
+            if (size(deck%model%contacts) == 0) call deck%missing(deck%card%place, 'the deck '// &
+               'has no *CONTACT PAIR: there is no quantity that *ACCURACY could name')
+            if (any(deck%model%steps%continuation%is_on)) then
+               call deck%error(deck%card%place, '*ACCURACY needs numerical uncertainties, '// &
+                  'which branches of *CONTINUATION do not have; refine by *REFINE')
+            else if (deck%model%uncertainty == uncertainty_no) then
+               call deck%error(deck%card%place, '*ACCURACY needs numerical uncertainties; '// &
+                  'leave ERRORS=NO out of *OPTIONS')
             end if
-            call take_parameter(card, 'ROUNDS', deck, deck%model%accuracy%rounds, '>=1')
-            do j = 1, size(card%data)
-               call build_target(card%data(j), estimated, deck)
-            end do
-         end associate
+         end if
+         call take_parameter(deck%card, 'ROUNDS', deck, deck%model%accuracy%rounds, '>=1')
+         do j = 1, size(deck%card%data)
+            call build_target(deck%card%data(j), estimated, deck)
+         end do
       end do
    end subroutine build_accuracy
 
@@ -377,9 +374,8 @@ contains
       if (target%is_relative .and. target%bound >= 1.0_dp) call deck%error(data%place(2), 'a '// &
          'target relative to the value must be below 1; 0.01 is 1 %')
       target%interface = 0
-      if (data%has(4) .and. size(deck%model%contacts) > 0) then
-         call deck%look_up('contact pair', data%text(4), data%place(4), target%interface)
-      end if
+      if (data%has(4) .and. size(deck%model%contacts) > 0) call deck%look_up('contact pair', &
+         data%text(4), data%place(4), target%interface)
       do i = 1, size(deck%model%accuracy%targets)
          associate (other => deck%model%accuracy%targets(i))
             if (other%quantity == target%quantity .and. any(target%interface == [0, &

@@ -15,7 +15,7 @@ module deck_checks
    use mesh_checks, only: check_jacobians, check_planes, check_sides, check_slenderness
    use model, only: model_type
    use refinement, only: numbering_fault
-   use sliding_checks, only: check_sliding
+   use step_checks, only: check_sliding
    use steps, only: solves_heat, solves_mechanics
    use tail_choice, only: needs_full_tail
    use text, only: to_text, to_upper
@@ -43,6 +43,7 @@ contains
       integer :: uses(4, size(deck%mesh%element_number)), e, without
       logical :: inverted(size(deck%mesh%element_number))
       character(:), allocatable :: fault
+      integer, allocatable :: cards(:)
 
       ! The mesh once it is refined.
       fault = numbering_fault(deck%mesh, size(deck%mesh%element_number)*4_long**deck%levels)
@@ -54,7 +55,13 @@ contains
          'element '//to_text(deck%mesh%element_number(e))//'; elements without one: '//to_text( &
          without))
       call check_materials(deck)
-      call check_tail(deck)
+      ! A sparse tail has no derivatives between all contact points.
+      if (deck%model%tail == tail_sparse .and. deck%analyses_sound) then
+         cards = cards_of(deck%cards, 'SOLVER')
+         if (needs_full_tail(deck%model)) call deck%error(deck%cards%keywords(cards(1))%place, &
+            'TAIL=SPARSE does not go with *CONTINUATION, which needs derivatives between all '// &
+            'contact points; leave TAIL= out')
+      end if
       call check_sliding(deck)
       call check_references(deck)
       call check_planes(deck)
@@ -64,18 +71,6 @@ contains
       call check_sides(deck, inverted, uses)
       call check_loads(deck, uses)
    end subroutine check_model
-
-   !> A sparse tail has no derivatives between all contact points.
-   subroutine check_tail(deck)
-      type(deck_type), intent(inout) :: deck
-      integer, allocatable :: cards(:)
-
-      if (deck%model%tail /= tail_sparse .or. .not. deck%analyses_sound) return
-      if (.not. needs_full_tail(deck%model)) return
-      cards = cards_of(deck%cards, 'SOLVER')
-      call deck%error(deck%cards%keywords(cards(1))%place, 'TAIL=SPARSE does not go with '// &
-         '*CONTINUATION, which needs derivatives between all contact points; leave TAIL= out')
-   end subroutine check_tail
 
    !> The reference node of a section has no displacements in the plane, which other cards relate.
    subroutine check_references(deck)
@@ -105,7 +100,6 @@ contains
       end associate
    end subroutine check_references
 
-   !> Every material in use has what the steps need.
    subroutine check_materials(deck)
       type(deck_type), intent(inout) :: deck
       logical :: mechanics, heat
@@ -138,8 +132,7 @@ contains
    !> Warns of the first element of some kinds that has the material and is not in plane stress.
    subroutine warn_of_kinds(deck, m, kinds, subject, trouble)
       type(deck_type), intent(inout) :: deck
-      integer, intent(in) :: m
-      integer, intent(in) :: kinds(:)
+      integer, intent(in) :: m, kinds(:)
       character(*), intent(in) :: subject, trouble
       integer :: e, kind
 

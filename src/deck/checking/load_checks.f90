@@ -1,5 +1,4 @@
-!> Loads and supports once all cards are read: whether they act on something, and in a step that
-!> has use for them.
+!> Whether loads and supports act on something, and in a step that has use for them.
 module load_checks
    use equations, only: constrained_nodes, equation_nodes
    use deck_context, only: deck_type
@@ -104,22 +103,19 @@ contains
       end do
    end subroutine check_amplitudes
 
-   !> Index of the first step in which heat is loaded or a temperature prescribed; that behind the
-   !> last step when there is none.
+   !> Index of the first step that loads heat or prescribes a temperature; behind the last for none.
    pure integer function first_heat(deck)
       type(deck_type), intent(in) :: deck
       integer :: i
 
       first_heat = size(deck%model%steps) + 1
       do i = 1, deck%boundaries%count
-         if (deck%boundaries%items(i)%component == dof_temperature) then
-            first_heat = min(first_heat, max(1, deck%boundaries%items(i)%step))
-         end if
+         if (deck%boundaries%items(i)%component == dof_temperature) first_heat = min(first_heat, &
+            max(1, deck%boundaries%items(i)%step))
       end do
       do i = 1, deck%loads%count
-         if (is_heat(deck%loads%items(i)%kind)) then
-            first_heat = min(first_heat, deck%loads%items(i)%step)
-         end if
+         if (is_heat(deck%loads%items(i)%kind)) first_heat = min(first_heat, &
+            deck%loads%items(i)%step)
       end do
    end function first_heat
 
@@ -130,7 +126,6 @@ contains
          load_film_coefficient])
    end function is_heat
 
-   !> Every material of the loaded elements has a density.
    subroutine check_density(request, label, deck)
       type(request_type), intent(in) :: request
       character(*), intent(in) :: label
@@ -166,8 +161,7 @@ contains
          'acts there'//others(size(elements), '; elements with such a side: '))
    end subroutine check_faces
 
-   !> Checks *BOUNDARY: whether it acts on something, in a step that has use for it, and says one
-   !> thing only.
+   !> Checks whether *BOUNDARY acts on something, in a step that has use for it, and says one thing.
    subroutine check_boundaries(deck, used)
       type(deck_type), intent(inout) :: deck
       logical, intent(in) :: used(0:)                      ! (0:nodes) whether elements have them
@@ -212,10 +206,9 @@ contains
    !> Where ORDER=1 drops all nodes of a data card, their corners have values in their place.
    subroutine check_dropped(deck)
       type(deck_type), intent(inout) :: deck
-      integer :: corners(2, size(deck%mesh%node_number))
+      integer :: corners(2, size(deck%mesh%node_number)), i, j, card
       integer :: first(3, size(deck%mesh%node_number))   ! first step that gives a value
       integer, allocatable :: nodes(:)
-      integer :: i, j, card
 
       corners = side_corners(deck%mesh)
       first = huge(first)

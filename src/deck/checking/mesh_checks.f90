@@ -6,6 +6,7 @@
 !> is left of the pressure at a contact point of such a side at 1e-8.
 module mesh_checks
    use deck_context, only: deck_type
+   use deck_structure, only: cards_of
    use element_kinds, only: axisymmetric, element_corner_count, element_node_count, &
       generalized_strain, linear_kind, plane_strain, side_node_count
    use element_sides, only: side_ends
@@ -14,7 +15,7 @@ module mesh_checks
    use quadrature, only: integration_rule, most_points, point_count
    use shape_functions, only: element_gradients, element_shape, node_position
    use sorting, only: sort_order
-   use text, only: others, to_text, to_upper
+   use text, only: others, to_text
    implicit none
    private
    public :: check_planes, check_sides, check_jacobians, check_folds, check_slenderness, &
@@ -71,8 +72,7 @@ contains
       end do
    end subroutine check_planes
 
-   !> Elements meet along whole sides, two at each, and surfaces are faces of which one side is
-   !> free.
+   !> Elements meet along whole sides, two at each; of the faces of surfaces one side is free.
    subroutine check_sides(deck, inverted, uses)
       type(deck_type), intent(inout) :: deck
       logical, intent(in) :: inverted(:)   !! (elements) whether their sides may not be as meant
@@ -111,7 +111,6 @@ contains
       call check_faces(deck, uses)
    end subroutine check_sides
 
-   !> Checks the elements that meet between two corners.
    subroutine check_meeting(deck, sides, uses)
       type(deck_type), intent(inout) :: deck
       type(element_side_type), intent(in) :: sides(:)
@@ -170,11 +169,18 @@ contains
    subroutine check_faces(deck, uses)
       type(deck_type), intent(inout) :: deck
       integer, intent(inout) :: uses(:, :)   !! (4, elements) elements that meet at each side
-      logical :: wrong(size(uses, 1), size(uses, 2))
+      logical :: wrong(size(uses, 1), size(uses, 2)), is_cut(size(deck%mesh%surfaces))
       logical, allocatable :: inside(:)
+      integer, allocatable :: sections(:)
       integer :: i, s
 
       wrong = .false.
+      is_cut = .false.
+      sections = cards_of(deck%cards, 'PRE-TENSION SECTION')
+      do i = 1, size(sections)
+         s = deck%index_of('surface', deck%cards%keywords(sections(i))%text('SURFACE'))
+         if (s > 0) is_cut(s) = .true.
+      end do
       do s = 1, size(deck%mesh%surfaces)
          associate (faces => deck%mesh%surfaces(s)%faces)
             allocate(inside(size(faces, 2)))
@@ -182,10 +188,7 @@ contains
                inside(i) = uses(faces(2, i), faces(1, i)) > 1
                wrong(faces(2, i), faces(1, i)) = wrong(faces(2, i), faces(1, i)) .or. inside(i)
             end do
-            i = findloc(inside, .true., dim=1)
-            if (i > 0) then
-               if (is_of_section(deck, deck%mesh%surfaces(s)%name)) i = 0
-            end if
+            i = findloc(inside .and. .not. is_cut(s), .true., dim=1)
             if (i > 0) call deck%error(deck%face_places(s)%items(i), 'face S'//to_text(faces(2, &
                i))//' of element '//to_text(deck%mesh%element_number(faces(1, i)))//' in '// &
                'surface '//deck%mesh%surfaces(s)%name//' lies inside a body: another element '// &
@@ -198,21 +201,7 @@ contains
       where (wrong) uses = 0
    end subroutine check_faces
 
-   !> Whether a *PRE-TENSION SECTION cuts a body along a surface.
-   pure logical function is_of_section(deck, surface)
-      type(deck_type), intent(in) :: deck
-      character(*), intent(in) :: surface
-      integer :: k
-
-      is_of_section = .false.
-      do k = 1, size(deck%cards%keywords)
-         if (deck%cards%keywords(k)%name == 'PRE-TENSION SECTION') is_of_section = &
-            is_of_section .or. to_upper(deck%cards%keywords(k)%text('SURFACE')) == surface
-      end do
-   end function is_of_section
-
-   !> The Jacobian is positive at the integration points of every element. Elements that go round
-   !> clockwise are reported once.
+   !> The Jacobian is positive at all integration points. Elements that are clockwise are told once.
    subroutine check_jacobians(deck, inverted)
       type(deck_type), intent(inout) :: deck
       logical, intent(out) :: inverted(:)    !! (elements) whether its sides may be wrong
@@ -241,7 +230,6 @@ contains
          others(count(clockwise), '; such elements: '))
    end subroutine check_jacobians
 
-   !> Message on an element that is inverted somewhere.
    pure function inversion(mesh, e, where) result(message)
       type(mesh_type), intent(in) :: mesh
       integer, intent(in) :: e
@@ -331,19 +319,24 @@ contains
       end do
    end function folded_node
 
-   !> No side of an element is far shorter than the others. Corners in one place are left to the
-   !> Jacobian.
+   !> No side of an element is far shorter than others; corners in one place go by the Jacobian.
    subroutine check_slenderness(deck)
       type(deck_type), intent(inout) :: deck
-      real(dp) :: least, ratio
-      integer :: e, worst, count_doubtful
+      real(dp) :: corners(2, 4), least, lengths(4), ratio
+      integer :: e, n, worst, count_doubtful
 
       worst = 0
       count_doubtful = 0
       least = doubtful
       do e = 1, size(deck%mesh%element_number)
          if (.not. deck%element_valid(e)) cycle
-         ratio = side_ratio(deck%mesh, e)
+         ! Of corners alone; sides without a length do not count.
+         n = element_corner_count(deck%mesh%element_kind(e))
+         corners(:, :n) = deck%mesh%coordinates(:, deck%mesh%element_nodes(:n, e))
+         lengths(:n) = norm2(cshift(corners(:, :n), 1, dim=2) - corners(:, :n), dim=1)
+         ratio = 1.0_dp
+         if (any(lengths(:n) > 0.0_dp)) ratio = minval(lengths(:n), mask=lengths(:n) > 0.0_dp)/ &
+            maxval(lengths(:n))
          if (ratio < hopeless) call deck%error(deck%element_place(e), said(deck%mesh, e, ratio)// &
             ', and rounding would spoil the result')
          if (ratio < hopeless .or. ratio >= doubtful) cycle
@@ -355,23 +348,6 @@ contains
          ', and pressures there are accurate to '//to_text(epsilon(1.0_dp)/least**2)//' only '// &
          '(number of such elements: '//to_text(count_doubtful)//')')
    end subroutine check_slenderness
-
-   !> The shortest side that has a length, over the longest; of corners alone.
-   pure real(dp) function side_ratio(mesh, e)
-      type(mesh_type), intent(in) :: mesh
-      integer, intent(in) :: e
-      real(dp) :: lengths(4)
-      integer :: i, n
-
-      n = element_corner_count(mesh%element_kind(e))
-      do i = 1, n
-         lengths(i) = norm2(mesh%coordinates(:, mesh%element_nodes(1 + mod(i, n), e)) - &
-            mesh%coordinates(:, mesh%element_nodes(i, e)))
-      end do
-      side_ratio = 1.0_dp
-      if (any(lengths(:n) > 0.0_dp)) side_ratio = minval(lengths(:n), mask=lengths(:n) > 0.0_dp)/ &
-         maxval(lengths(:n))
-   end function side_ratio
 
    !> The part of a message that names an element and the ratio of its sides.
    pure function said(mesh, e, ratio) result(words)

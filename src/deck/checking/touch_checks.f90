@@ -15,12 +15,10 @@ module touch_checks
    private
    public :: check_touches
 
-   !> Part of the shorter side by which it may be apart from the other one: coordinates of decks
-   !> have few digits.
+   !> Part of the shorter side by which it may be apart from the other: decks have few digits.
    real(dp), parameter :: close_by = 1.0e-3_dp
 
-   !> Part of the shorter side along which two sides must lie on each other: at corners of bodies
-   !> they meet in a point.
+   !> Part of the shorter side along which two sides must touch: at corners they meet in a point.
    real(dp), parameter :: overlapping = 0.05_dp
 
    real(dp), parameter :: margin = 0.1_dp   !! part of a side by which it may bulge past its nodes
@@ -37,15 +35,13 @@ module touch_checks
 
 contains
 
-   !> Warns of faces that touch and are not related, once for two bodies, for the seams of a body
-   !> and for hanging nodes.
+   !> Warns of faces that touch unrelated, once for two bodies, seams of a body and hanging nodes.
    subroutine check_touches(deck)
       type(deck_type), intent(inout) :: deck
       type(element_sides_type) :: sides
       type(touch_type), allocatable :: touches(:)
       !> (2, touches) touches share a message: hanging nodes, 0, or faces of the same two bodies
-      integer, allocatable :: key(:, :)
-      integer, allocatable :: order(:)
+      integer, allocatable :: key(:, :), order(:)
       logical, allocatable :: shared(:, :)                ! (2, sides)
       integer :: bodies(2), first, i, k, last
 
@@ -211,7 +207,6 @@ contains
       end function is_paired
    end subroutine drop_related
 
-   !> Warns of the touches of one key.
    subroutine warn(deck, sides, touches, key)
       type(deck_type), intent(inout) :: deck
       type(element_sides_type), intent(in) :: sides
@@ -263,10 +258,8 @@ contains
       integer, intent(in) :: side
       character(:), allocatable :: words
 
-      associate (e => sides%elements(1, side))
-         words = 'side '//to_text(findloc(sides%of_element(:, e), side, dim=1))//' of element '// &
-            to_text(mesh%element_number(e))
-      end associate
+      words = 'side '//to_text(findloc(sides%of_element(:, sides%elements(1, side)), side, &
+         dim=1))//' of element '//to_text(mesh%element_number(sides%elements(1, side)))
    end function side_words
 
    pure real(dp) function length_of(mesh, ends) result(length)

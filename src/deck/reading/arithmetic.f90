@@ -25,7 +25,8 @@ module arithmetic
    !> An expression while it is read.
    type :: reader_type
       character(:), allocatable :: text
-      type(string_type), allocatable :: names(:), values(:)   !! (parameters)
+      type(name_index_type) :: parameters                 !! those before
+      type(string_type), allocatable :: values(:)         !! (parameters)
       integer :: at = 1                      !! the byte that is read next
       integer :: depth = 0
       type(arithmetic_fault_type) :: fault   !! the first one; reading ends there
@@ -48,8 +49,7 @@ contains
          index(value(:len(value) - 1), '*') > 0 .or. parameters%find(name_at(value, 1)) > 0
    end function is_arithmetic
 
-   !> Value of an expression. Every number, also an intermediate one, is 0 or between 1E-100 and
-   !> 1E100.
+   !> Value of an expression. Every number, also an intermediate one, is 0 or from 1E-100 to 1E100.
    pure subroutine evaluate(expression, parameters, values, number, fault)
       character(*), intent(in) :: expression
       type(name_index_type), intent(in) :: parameters     !! the earlier ones
@@ -59,7 +59,7 @@ contains
       type(reader_type) :: self
 
       self%text = expression
-      self%names = parameters%known()
+      self%parameters = parameters
       self%values = values
       call read_terms(self, '+-', number)
       if (next(self) /= '') call fail(self, self%at, 'an operator is expected here'// &
@@ -183,13 +183,11 @@ contains
          call read_parentheses(self, number)
          call apply(self, place, to_upper(name), number)
       else
-         do k = size(self%names), 1, -1
-            if (self%names(k)%value == to_upper(name)) exit
-         end do
+         k = self%parameters%find(name)
          if (k == 0) then
             self%fault%unknown = to_upper(name)
             call fail(self, place, 'no *PARAMETER before this one defines '//to_upper(name)// &
-               nearest_known(to_upper(name), self%names))
+               nearest_known(to_upper(name), self%parameters%known()))
             return
          end if
          call read_real(self%values(k)%value, number, valid)
@@ -283,8 +281,7 @@ contains
          call fail(self, place, 'unknown function '//name//known_choices(name, &
             split_words(functions)))
       end select
-      if (.not. valid) call fail(self, place, name//' of '//all_digits(number)// &
-         ' is not a number')
+      if (.not. valid) call fail(self, place, name//' of '//all_digits(number)//' is not a number')
       call check(self, place, number)
    end subroutine apply
 
@@ -294,9 +291,8 @@ contains
       integer, intent(in) :: place                ! of the operator or function
       real(dp), intent(inout) :: number           ! 0 after an error
 
-      if (abs(number) > largest_magnitude .or. &
-         abs(number) > 0.0_dp .and. abs(number) < smallest_magnitude) call fail(self, place, &
-         'the result is not between 1E-100 and 1E100')
+      if (abs(number) > largest_magnitude .or. abs(number) > 0.0_dp .and. abs(number) < &
+         smallest_magnitude) call fail(self, place, 'the result is not between 1E-100 and 1E100')
       if (allocated(self%fault%message)) number = 0.0_dp
    end subroutine check
 

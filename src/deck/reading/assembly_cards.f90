@@ -4,13 +4,12 @@
 !> become INSTANCE.NAME. Nodes and elements of the first instance keep their numbers; those of the
 !> next ones, and last those of the assembly itself, are raised by multiples of a power of ten.
 module assembly_cards
-   use card_parameters, only: chosen, need_parameter, surface_kinds, take_parameter
+   use card_values, only: chosen, need_parameter, surface_kinds, take_parameter
    use cards, only: add_data, add_keyword, add_note, cards_type, data_card_type, field_type, &
       keyword_card_type, replace_cards
    use deck_report, only: deck_report_type
-   use given_cards, only: exact_text
+   use given_cards, only: exact_text, motion_type, read_motion
    use kinds, only: dp, long
-   use plane_motions, only: motion_type, read_motion
    use spelling, only: nearest_known
    use text, only: append, read_integer, read_real, string_type, to_text, to_upper
    implicit none
@@ -93,20 +92,26 @@ contains
       integer, intent(in) :: instances
       type(deck_report_type), intent(inout) :: report
       integer, intent(out) :: step
-      integer(long) :: largest
-      integer :: k, j
+      integer(long) :: largest, values(7)
+      integer :: i, j, k, number
+      logical :: valid
 
       largest = 1
       do k = 1, size(cards%keywords)
-         select case (cards%keywords(k)%name)
-         case ('NODE', 'ELEMENT', 'NGEN', 'ELGEN')
-            do j = 1, size(cards%keywords(k)%data)
-               largest = &
-                  max(largest, largest_number(cards%keywords(k)%name, cards%keywords(k)%data(j)))
+         associate (card => cards%keywords(k))
+            if (all(card%name /= [character(7) :: 'NODE', 'ELEMENT', 'NGEN', 'ELGEN'])) cycle
+            do j = 1, size(card%data)
+               values = [0, 1, 1, 1, 1, 1, 1]
+               do i = 1, 7
+                  call read_integer(card%data(j)%text(i), number, valid)
+                  if (valid) values(i) = abs(number)
+               end do
+               if (card%name == 'NGEN') values(1) = maxval(values(:2))
+               if (card%name == 'ELGEN') values(1) = values(1) + (values(2) - 1)*values(4) + &
+                  (values(5) - 1)*values(7)
+               largest = max(largest, values(1))
             end do
-         case default
-            cycle
-         end select
+         end associate
       end do
       step = 10
       do while (step <= largest .and. step < 10**9)
@@ -117,25 +122,6 @@ contains
          ' instances would exceed '//to_text(huge(1)))
       step = 0
    end subroutine find_step
-
-   !> Largest number that a data card gives.
-   integer(long) function largest_number(keyword, data)
-      character(*), intent(in) :: keyword
-      type(data_card_type), intent(in) :: data
-      integer(long) :: values(7)
-      integer :: i, number
-      logical :: valid
-
-      values = [0, 1, 1, 1, 1, 1, 1]
-      do i = 1, 7
-         call read_integer(data%text(i), number, valid)
-         if (valid) values(i) = abs(number)
-      end do
-      largest_number = values(1)
-      if (keyword == 'NGEN') largest_number = maxval(values(:2))
-      if (keyword == 'ELGEN') largest_number = values(1) + (values(2) - 1)*values(4) + &
-         (values(5) - 1)*values(7)
-   end function largest_number
 
    !> Takes one card where it is.
    subroutine take_card(cards, k, open, all, report)
@@ -221,7 +207,6 @@ contains
       end do
    end subroutine open_instances
 
-   !> Begins an instance with the cards of its part.
    subroutine open_instance(cards, card, instance, open, all, report)
       type(cards_type), intent(in) :: cards
       type(keyword_card_type), intent(in) :: card
@@ -238,9 +223,8 @@ contains
             'instance '//instance%name//' is defined twice')
       end do
       open%instances = [open%instances, instance]
-      if (instance%offset > 0) call add_note(all%notes, '*INSTANCE '//instance%name// &
-         ': numbers of its nodes and elements are those of the part plus '// &
-         to_text(instance%offset))
+      if (instance%offset > 0) call add_note(all%notes, '*INSTANCE '//instance%name//': '// &
+         'numbers of its nodes and elements are those of the part plus '//to_text(instance%offset))
       call need_parameter(card, 'PART', report, part)
       if (len(part) == 0) return
       do i = 1, size(open%parts)
@@ -299,8 +283,7 @@ contains
       end associate
    end subroutine take_flat
 
-   !> Adds a card of a part for an instance. Errors that the copy has are reported where the card
-   !> of the part is.
+   !> Adds a card of a part for an instance. Errors in it are reported where that of the part is.
    subroutine copy_card(card, instance, all)
       type(keyword_card_type), intent(in) :: card           !! one of its keyword cards
       type(instance_type), intent(in) :: instance
@@ -346,7 +329,6 @@ contains
       end if
    end subroutine prefix
 
-   !> Numbers, names and coordinates of one data card.
    subroutine convert(card, data, position, instance, fields)
       type(keyword_card_type), intent(in) :: card
       type(data_card_type), intent(in) :: data

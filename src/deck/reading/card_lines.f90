@@ -1,16 +1,14 @@
 !> One line after another -> cards: comments, continuations, parameters.
 module card_lines
    use card_fields, only: drop_empty_end, first_text, is_comment, is_keyword, last_text, &
-      split_fields, without_quotes
-   use card_parameters, only: take_parameter
-   use card_typos, only: check_commas, lacks_star
+      split_fields, without_quotes, fixed_columns_type, split_columns, take_format
+   use card_values, only: take_parameter
+   use keyword_cards, only: check_commas, lacks_star, is_parameter, make_keyword_card
    use cards, only: add_data, add_keyword, add_note, cards_type, field_type, keyword_card_type
    use deck_parameters, only: deck_parameters_type
    use deck_report, only: deck_report_type
    use deck_source, only: place_type
    use element_types, only: element_type_fields
-   use fixed_columns, only: fixed_columns_type, split_columns, take_format
-   use keyword_cards, only: is_parameter, make_keyword_card
    use keywords, only: is_output
    use spelling, only: find_look_alike
    use text, only: to_text, to_upper
@@ -23,6 +21,8 @@ module card_lines
 
    !> State of the reader between two lines.
    type :: card_lines_type
+      type(cards_type), pointer :: cards => null()          !! receives the cards
+      type(deck_report_type), pointer :: report => null()   !! receives errors
       type(deck_parameters_type) :: parameters              !! *PARAMETER so far
       integer :: width = default_width                      !! columns of a card
       character(:), allocatable :: include                  !! path that the card just read includes
@@ -42,12 +42,10 @@ module card_lines
 contains
 
    !> Takes one line.
-   subroutine take_line(self, line, image, cards, report)
+   subroutine take_line(self, line, image)
       class(card_lines_type), intent(inout) :: self        !! what is open
       character(*), intent(in) :: line                     !! card image
       integer, intent(in) :: image                         !! its running number
-      type(cards_type), intent(inout) :: cards             !! receives the card that it completes
-      type(deck_report_type), intent(inout) :: report      !! receives errors
       type(field_type), allocatable :: fields(:)
       logical :: is_text, is_variable, title
 
@@ -64,273 +62,242 @@ contains
          is_text = title .or. self%keyword == 'STEP'
       end if
       if (.not. is_text .and. line(first_text(line):first_text(line)) == '#') then
-         call report%error(place_type(image, first_text(line)), 'a comment begins with **', &
+         call self%report%error(place_type(image, first_text(line)), 'a comment begins with **', &
             'comments of other programs')
          return
       end if
-      if (is_keyword(line) .or. .not. (is_text .or. self%skips_data)) call &
-         suspect_look_alike(line, image, report)
-      if (is_keyword(line) .or. (.not. is_variable .and. lacks_star(line, title, cards))) then
-         call self%finish(cards, report)
-         call split_fields(line, image, report, fields)
+      if (is_keyword(line) .or. .not. (is_text .or. self%skips_data)) call suspect_look_alike( &
+         self, line, image)
+      if (is_keyword(line) .or. (.not. is_variable .and. lacks_star(line, title, self%cards))) then
+         call self%finish()
+         call split_fields(line, image, self%report, fields)
          if (.not. is_keyword(line)) then
-            call report%error(fields(1)%place, 'a keyword without its asterisk; write *'// &
+            call self%report%error(fields(1)%place, 'a keyword without its asterisk; write *'// &
                to_upper(fields(1)%text))
             fields(1)%text = '*'//fields(1)%text
          end if
-         call take_fields(self, fields, cards, report)
+         call take_fields(self, fields)
          return
       end if
       if (allocated(self%pending)) then
-         call split_fields(line, image, report, fields)
+         call split_fields(line, image, self%report, fields)
          if (is_parameter(self%pending(1)%text, fields(1)%text)) then
             ! The comma at the end of the card left an empty field.
             fields = [self%pending(:size(self%pending) - 1), fields]
             deallocate (self%pending)
-            call take_fields(self, fields, cards, report)
+            call take_fields(self, fields)
             return
          end if
-         call self%finish(cards, report)
+         call self%finish()
       end if
-      call take_data_line(self, line, image, cards, report)
+      call take_data_line(self, line, image)
    end subroutine take_line
 
-   !> Warns of the first character of a line that looks like another one. The origin of an expected
-   !> value is any text.
-   subroutine suspect_look_alike(line, image, report)
+   !> Warns of the first character of a line that looks like another one, but not in SOURCE=.
+   subroutine suspect_look_alike(self, line, image)
+      class(card_lines_type), intent(inout) :: self
       character(*), intent(in) :: line
       integer, intent(in) :: image
-      type(deck_report_type), intent(inout) :: report
       character(:), allocatable :: words
       integer :: position
 
       call find_look_alike(line, position, words)
       if (position == 0) return
       if (index(to_upper(line(:position)), 'SOURCE=') > 0) return
-      call report%possible_cause(place_type(image, position), 'this character is '//words)
+      call self%report%possible_cause(place_type(image, position), 'this character is '//words)
    end subroutine suspect_look_alike
 
-   !> Number of fields that are not empty.
-   pure integer function filled(fields)
-      type(field_type), intent(in) :: fields(:)
-      integer :: i
-
-      filled = count([(len(fields(i)%text) > 0, i=1, size(fields))])
-   end function filled
-
    !> Ends a card that waits for its continuation, which a keyword card need not have.
-   subroutine finish(self, cards, report)
+   subroutine finish(self)
       class(card_lines_type), intent(inout) :: self        !! what is open
-      type(cards_type), intent(inout) :: cards             !! receives the card
-      type(deck_report_type), intent(inout) :: report      !! receives errors
       type(field_type), allocatable :: fields(:)
       character(:), allocatable :: lack
 
       if (allocated(self%pending)) then
          call move_alloc(self%pending, fields)
          call drop_empty_end(fields)
-         call take_keyword(self, fields, cards, report)
+         call take_keyword(self, fields)
       else if (allocated(self%comma)) then
-         call take_last(cards, fields)
+         call take_last(self, fields)
          lack = ''
          if (self%element_fields > 0) lack = ': the element has '//to_text(size(fields) - 1)// &
             ' of its '//to_text(self%element_fields - 1)//' nodes'
-         call report%error(place_type(self%comma%place%image, self%comma%place%column - 1), &
+         call self%report%error(place_type(self%comma%place%image, self%comma%place%column - 1), &
             'the card ends in a comma, but nothing continues it'//lack)
          self%comma%undefined = .true.
          fields = [fields, self%comma]
-         call add_data(cards, fields, self%comma%place)
+         call add_data(self%cards, fields, self%comma%place)
          deallocate (self%comma)
       end if
    end subroutine finish
 
    !> Takes the last data card away again, which goes on.
-   subroutine take_last(cards, fields)
-      type(cards_type), intent(inout) :: cards
+   subroutine take_last(self, fields)
+      type(card_lines_type), intent(inout) :: self
       type(field_type), allocatable, intent(out) :: fields(:)
 
-      associate (card => cards%keywords(cards%keyword_count))
+      associate (card => self%cards%keywords(self%cards%keyword_count))
          call move_alloc(card%data(card%data_count)%fields, fields)
          card%data_count = card%data_count - 1
       end associate
    end subroutine take_last
 
    !> Takes the fields of a keyword card that may continue.
-   subroutine take_fields(self, fields, cards, report)
+   subroutine take_fields(self, fields)
       type(card_lines_type), intent(inout) :: self
       type(field_type), allocatable, intent(inout) :: fields(:)
-      type(cards_type), intent(inout) :: cards
-      type(deck_report_type), intent(inout) :: report
 
       if (size(fields) > 1 .and. len(fields(size(fields))%text) == 0) then
          call move_alloc(fields, self%pending)
       else
-         call take_keyword(self, fields, cards, report)
+         call take_keyword(self, fields)
       end if
    end subroutine take_fields
 
-   !> A complete keyword card. *INCLUDE is obeyed and leaves no card: what it includes is in its
-   !> place.
-   subroutine take_keyword(self, fields, cards, report)
+   !> A complete keyword card. *INCLUDE leaves none: what it includes is in its place.
+   subroutine take_keyword(self, fields)
       type(card_lines_type), intent(inout) :: self
       type(field_type), allocatable, intent(inout) :: fields(:)
-      type(cards_type), intent(inout) :: cards
-      type(deck_report_type), intent(inout) :: report
       type(keyword_card_type) :: card
       integer :: i, width
       logical :: valid
 
       do i = 2, size(fields)
-         call self%parameters%substitute(fields(i), report)
+         call self%parameters%substitute(fields(i), self%report)
       end do
-      call make_keyword_card(fields, report, cards, card)
+      call make_keyword_card(fields, self%report, self%cards, card)
       if (card%known > 0 .and. card%name == 'INCLUDE') then
          if (size(card%parameters) > 0) then
             self%include = card%parameters(1)%text
             self%include_place = card%parameters(1)%value_place
          else
-            if (.not. card%flawed) call report%error(card%place, '*INCLUDE needs INPUT=')
-            call report%lose()
+            if (.not. card%flawed) call self%report%error(card%place, '*INCLUDE needs INPUT=')
+            call self%report%lose()
          end if
          return
       end if
       if (card%name == 'OPTIONS') then
          width = self%width
-         call take_parameter(card, 'WIDTH', report, width, '>=80')
+         call take_parameter(card, 'WIDTH', self%report, width, '>=80')
          self%width = max(self%width, width)
       end if
       if (card%name == 'ELEMENT') self%element_fields = element_type_fields(card%text('TYPE'))
       self%keyword = card%name
       if (allocated(self%refusal_of_data)) deallocate(self%refusal_of_data)
       if (allocated(card%refusal_of_data)) self%refusal_of_data = card%refusal_of_data
-      call take_format(card, report, self%columns, valid)
+      call take_format(card, self%report, self%columns, valid)
       self%skips_data = card%known == 0 .or. .not. valid
       card%data_lost = .not. valid
-      call add_keyword(cards, card)
+      call add_keyword(self%cards, card)
    end subroutine take_keyword
 
-   subroutine take_data_line(self, line, image, cards, report)
+   subroutine take_data_line(self, line, image)
       type(card_lines_type), intent(inout) :: self
       character(*), intent(in) :: line
       integer, intent(in) :: image
-      type(cards_type), intent(inout) :: cards
-      type(deck_report_type), intent(inout) :: report
       type(field_type), allocatable :: fields(:)
       logical :: valid
 
       if (.not. allocated(self%keyword)) then
-         call report%error(place_type(image, first_text(line)), &
-            'a data card before the first keyword')
+         call self%report%error(place_type(image, first_text(line)), 'a data card before the '// &
+            'first keyword')
          self%keyword = ''
          self%skips_data = .true.
       end if
       if (allocated(self%refusal_of_data)) then
-         call report%error(place_type(image, first_text(line)), self%refusal_of_data)
+         call self%report%error(place_type(image, first_text(line)), self%refusal_of_data)
          deallocate(self%refusal_of_data)
       end if
       if (self%skips_data) return
       if (self%keyword == 'STEP' .and. verify(line, '0123456789+-.eEdD, ') > 0) then
-         call add_note(cards%notes, '*STEP: its title is ignored')
+         call add_note(self%cards%notes, '*STEP: its title is ignored')
          return
       end if
       if (self%keyword == 'HEADING') then
          allocate(fields(1))
          fields(1)%text = line(first_text(line):last_text(line))
          fields(1)%place = place_type(image, first_text(line))
-         call add_data(cards, fields, place_type(image, last_text(line) + 1))
+         call add_data(self%cards, fields, place_type(image, last_text(line) + 1))
          return
       end if
       if (allocated(self%columns%last)) then
-         call split_columns(self%columns, line, image, report, fields, valid)
+         call split_columns(self%columns, line, image, self%report, fields, valid)
          call drop_empty_end(fields)
-         if (.not. valid) cards%keywords(cards%keyword_count)%data_lost = .true.
+         if (.not. valid) self%cards%keywords(self%cards%keyword_count)%data_lost = .true.
       else
-         call split_fields(line, image, report, fields)
+         call split_fields(line, image, self%report, fields)
          if (self%keyword /= 'PARAMETER') then
-            call check_commas(cards, fields, report, valid)
+            call check_commas(self%cards, fields, self%report, valid)
             if (.not. valid) then
-               cards%keywords(cards%keyword_count)%data_lost = .true.
-               cards%keywords(cards%keyword_count)%flawed = .true.
+               self%cards%keywords(self%cards%keyword_count)%data_lost = .true.
+               self%cards%keywords(self%cards%keyword_count)%flawed = .true.
                self%skips_data = .true.
                return
             end if
          end if
       end if
       if (self%keyword == 'ELEMENT') then
-         call take_element(self, fields, image, cards, report)
+         call take_element(self, fields, image)
       else
-         call take_data(self, fields, image, cards, report)
+         call take_data(self, fields, image)
       end if
    end subroutine take_data_line
 
-   !> A line of elements, which may go on with the element before it or on the next line.
-   subroutine take_element(self, fields, image, cards, report)
+   !> A line of elements, which may go on on the next line, or with the element before it: where
+   !> that ends in a comma, a slip where the line is a whole element, or where the line has just the
+   !> nodes that it lacks, as in CalculiX.
+   subroutine take_element(self, fields, image)
       type(card_lines_type), intent(inout) :: self
       type(field_type), allocatable, intent(inout) :: fields(:)
       integer, intent(in) :: image
-      type(cards_type), intent(inout) :: cards
-      type(deck_report_type), intent(inout) :: report
       type(field_type), allocatable :: before(:)
       type(field_type) :: last
-      integer :: i
+      logical :: continues
+      integer :: filled, i, so_far
 
-      if (continues_element(self, fields, cards)) then
-         call take_last(cards, before)
+      so_far = 0
+      if (.not. allocated(self%comma)) then
+         associate (card => self%cards%keywords(self%cards%keyword_count))
+            if (card%data_count > 0) so_far = size(card%data(card%data_count)%fields)
+         end associate
+      end if
+      continues = allocated(self%comma) .or. (so_far > 0 .and. so_far < self%element_fields)
+      if (continues .and. self%element_fields > 0) then
+         filled = count([(len(fields(i)%text) > 0, i=1, size(fields))])
+         continues = allocated(self%comma) .neqv. so_far + filled == self%element_fields
+      end if
+      if (continues) then
+         call take_last(self, before)
          fields = [before, pack(fields, [(len(fields(i)%text) > 0 .or. i == size(fields), &
             i=1, size(fields))])]
          if (allocated(self%comma)) deallocate (self%comma)
       else
-         call self%finish(cards, report)
+         call self%finish()
       end if
       last = fields(size(fields))
       if (size(fields) > 1 .and. len(last%text) == 0 .and. size(fields) <= merge( &
          self%element_fields, most_fields, self%element_fields > 0)) self%comma = last
-      call take_data(self, fields, image, cards, report)
+      call take_data(self, fields, image)
    end subroutine take_element
 
-   !> Whether a line goes on with the element before it: this one ends in a comma, which is a slip
-   !> where the line is a whole element; or the line has just the nodes that it lacks, as in
-   !> CalculiX.
-   pure logical function continues_element(self, fields, cards)
-      type(card_lines_type), intent(in) :: self
-      type(field_type), intent(in) :: fields(:)
-      type(cards_type), intent(in) :: cards
-      integer :: before
-
-      continues_element = allocated(self%comma) .and. (self%element_fields == 0 .or. &
-         filled(fields) /= self%element_fields)
-      if (allocated(self%comma)) return
-      associate (card => cards%keywords(cards%keyword_count))
-         if (card%data_count == 0) return
-         before = size(card%data(card%data_count)%fields)
-      end associate
-      continues_element = before < self%element_fields .and. &
-         before + filled(fields) == self%element_fields
-   end function continues_element
-
-   !> A complete data card.
-   subroutine take_data(self, fields, image, cards, report)
+   subroutine take_data(self, fields, image)
       type(card_lines_type), intent(inout) :: self
       type(field_type), allocatable, intent(inout) :: fields(:)
       integer, intent(in) :: image
-      type(cards_type), intent(inout) :: cards
-      type(deck_report_type), intent(inout) :: report
       integer :: i
 
       call drop_empty_end(fields)
       do i = 1, size(fields)
          if (self%keyword == 'PARAMETER') then
-            call self%parameters%define(fields(i), cards%notes, report)
+            call self%parameters%define(fields(i), self%cards%notes, self%report)
             cycle
          end if
-         call self%parameters%substitute(fields(i), report)
-         if (index(fields(i)%text, '"') > 0) then
-            fields(i)%text = without_quotes(fields(i)%text)
-         end if
+         call self%parameters%substitute(fields(i), self%report)
+         if (index(fields(i)%text, '"') > 0) fields(i)%text = without_quotes(fields(i)%text)
       end do
       if (self%keyword == 'PARAMETER') return
-      call add_data(cards, fields, &
-         place_type(image, last_text(report%source%images(image)%value) + 1))
+      call add_data(self%cards, fields, place_type(image, last_text( &
+         self%report%source%images(image)%value) + 1))
    end subroutine take_data
 
 end module card_lines

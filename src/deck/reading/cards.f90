@@ -33,8 +33,8 @@ module cards
       procedure :: place => field_place
    end type data_card_type
 
-   !> A keyword card without its data cards.
-   type :: keyword_line_type
+   !> One keyword card with its data cards.
+   type :: keyword_card_type
       character(:), allocatable :: name                    !! as in the table; empty when unknown
       character(:), allocatable :: meant   !! keyword that a misspelt or refused one stands for
       integer :: known = 0                                 !! index into known_keywords, or 0
@@ -43,17 +43,13 @@ module cards
       type(parameter_type), allocatable :: parameters(:)   !! those that are known
       logical :: data_lost = .false.   !! whether data cards were left out after an error in them
       logical :: flawed = .false.      !! whether a parameter was left out after an error in it
+      integer :: data_count = 0                            !! data cards, while reading
+      type(data_card_type), allocatable :: data(:)         !! data cards
    contains
       procedure :: has => has_parameter
       procedure :: lacks => lacks_parameter
       procedure :: text => parameter_text
       procedure :: place_of => parameter_place
-   end type keyword_line_type
-
-   !> One keyword card with its data cards.
-   type, extends(keyword_line_type) :: keyword_card_type
-      integer :: data_count = 0                            !! data cards, while reading
-      type(data_card_type), allocatable :: data(:)         !! data cards
    end type keyword_card_type
 
    !> All cards of a deck.
@@ -108,7 +104,7 @@ contains
    end function field_place
 
    pure integer function position(card, name)
-      class(keyword_line_type), intent(in) :: card
+      class(keyword_card_type), intent(in) :: card
       character(*), intent(in) :: name
 
       do position = size(card%parameters), 1, -1
@@ -118,7 +114,7 @@ contains
 
    !> Whether a card has a parameter.
    pure logical function has_parameter(card, name)
-      class(keyword_line_type), intent(in) :: card
+      class(keyword_card_type), intent(in) :: card
       character(*), intent(in) :: name              !! name as in the table of keywords
 
       has_parameter = position(card, name) > 0
@@ -126,7 +122,7 @@ contains
 
    !> Whether a card is without a parameter, and not because of an error that is reported already.
    pure logical function lacks_parameter(card, name)
-      class(keyword_line_type), intent(in) :: card
+      class(keyword_card_type), intent(in) :: card
       character(*), intent(in) :: name              !! name as in the table of keywords
 
       lacks_parameter = .not. (card%has(name) .or. card%flawed)
@@ -134,7 +130,7 @@ contains
 
    !> Value of a parameter as written; empty where the card does not have it.
    pure function parameter_text(card, name) result(value)
-      class(keyword_line_type), intent(in) :: card
+      class(keyword_card_type), intent(in) :: card
       character(*), intent(in) :: name              !! name as in the table of keywords
       character(:), allocatable :: value            !! value without quotes
 
@@ -144,7 +140,7 @@ contains
 
    !> Place of the value of a parameter; that of the card where it does not have it.
    pure function parameter_place(card, name) result(place)
-      class(keyword_line_type), intent(in) :: card
+      class(keyword_card_type), intent(in) :: card
       character(*), intent(in) :: name              !! name as in the table of keywords
       type(place_type) :: place                     !! where the value is
 
@@ -155,15 +151,18 @@ contains
    !> Adds a keyword card, whose data cards are still to come.
    subroutine add_keyword(cards, card)
       class(cards_type), intent(inout) :: cards
-      class(keyword_line_type), intent(in) :: card   !! what is added
+      type(keyword_card_type), intent(in) :: card    !! what is added, but for its data
 
       if (.not. allocated(cards%keywords)) allocate(cards%keywords(64))
-      if (cards%keyword_count == size(cards%keywords)) then
-         call resize_keywords(cards%keywords, cards%keyword_count, 2*cards%keyword_count)
-      end if
+      if (cards%keyword_count == size(cards%keywords)) call resize_keywords(cards%keywords, &
+         cards%keyword_count, 2*cards%keyword_count)
       cards%keyword_count = cards%keyword_count + 1
-      cards%keywords(cards%keyword_count)%keyword_line_type = card
-      allocate (cards%keywords(cards%keyword_count)%data(0))
+      associate (added => cards%keywords(cards%keyword_count))
+         added = card
+         added%data_count = 0
+         if (allocated(added%data)) deallocate (added%data)
+         allocate (added%data(0))
+      end associate
    end subroutine add_keyword
 
    !> Adds a data card to the last keyword card.
@@ -173,9 +172,8 @@ contains
       type(place_type), intent(in) :: end                         !! where a missing field would be
 
       associate (card => cards%keywords(cards%keyword_count))
-         if (card%data_count == size(card%data)) then
-            call resize_data(card%data, card%data_count, 2*card%data_count + 4)
-         end if
+         if (card%data_count == size(card%data)) call resize_data(card%data, card%data_count, &
+            2*card%data_count + 4)
          card%data_count = card%data_count + 1
          call move_alloc(fields, card%data(card%data_count)%fields)
          card%data(card%data_count)%end = end
@@ -224,13 +222,14 @@ contains
       type(keyword_card_type), allocatable, intent(inout) :: list(:)
       integer, intent(in) :: kept, length
       type(keyword_card_type), allocatable :: other(:)
+      type(data_card_type), allocatable :: data(:)
       integer :: i
 
       allocate(other(length))
       do i = 1, kept
-         other(i)%keyword_line_type = list(i)%keyword_line_type
-         other(i)%data_count = list(i)%data_count
-         call move_alloc(list(i)%data, other(i)%data)
+         call move_alloc(list(i)%data, data)
+         other(i) = list(i)
+         call move_alloc(data, other(i)%data)
       end do
       call move_alloc(other, list)
    end subroutine resize_keywords

@@ -1,8 +1,7 @@
 !> A deck while its model is built: what is wrong with it, numbers and names -> indexes, places for
 !> messages, loads to be applied when the mesh is final; and how a card names nodes and elements.
 module deck_context
-   use card_parameters, only: need_parameter
-   use card_values, only: read_field
+   use card_values, only: need_parameter, read_field
    use cards, only: add_note, cards_type, data_card_type, keyword_card_type
    use deck_report, only: deck_report_type
    use deck_source, only: place_type
@@ -43,6 +42,8 @@ module deck_context
    !> A deck and what is wrong with it.
    type, extends(deck_report_type) :: deck_type
       type(cards_type), pointer :: cards => null()        !! its cards, which nobody changes
+      type(keyword_card_type), pointer :: card => null()  !! the one that is read
+      integer, private :: card_index = 0                  !! its position among the keyword cards
       type(model_type), pointer :: model => null()        !! what its cards make
       type(mesh_type), pointer :: mesh => null()          !! its mesh
       type(quantity_type), allocatable :: verifiable(:)   !! what *VERIFY may name
@@ -84,6 +85,7 @@ module deck_context
       logical :: analyses_sound = .true.     !! whether it is known what all steps solve, and when
       type(string_type), allocatable :: notes(:)          !! lines for the listing
    contains
+      procedure :: open_card
       procedure :: note
       procedure :: index_of
       procedure :: add_name
@@ -100,6 +102,15 @@ module deck_context
    end type deck_type
 
 contains
+
+   !> Begins to read a keyword card.
+   subroutine open_card(self, k)
+      class(deck_type), intent(inout) :: self
+      integer, intent(in) :: k                          !! index of the card
+
+      self%card_index = k
+      self%card => self%cards%keywords(k)
+   end subroutine open_card
 
    !> Notes a default that was used or a card that is not needed.
    subroutine note(self, line)
@@ -127,54 +138,50 @@ contains
       call self%names(findloc(nouns == noun, .true., dim=1))%add(name)
    end subroutine add_name
 
-   !> Takes the name of an item, NAME= of its card. That it has none, or that of an earlier one, is
+   !> Takes the name of an item, NAME= of the card. That it has none, or that of an earlier one, is
    !> an error; another name may have been meant.
-   subroutine take_name(self, k, noun, name)
+   subroutine take_name(self, noun, name)
       class(deck_type), intent(inout) :: self           !! receives the name, and errors
-      integer, intent(in) :: k                          !! index of the card
       character(*), intent(in) :: noun                  !! such as material
       character(:), allocatable, intent(out) :: name
       integer :: first
 
-      associate (cards => self%cards%keywords)
-         call need_parameter(cards(k), 'NAME', self, name)
-         first = k
-         if (len(name) > 0 .and. self%index_of(noun, name) > 0) then
-            do first = 1, k - 1
-               if (cards(first)%name == cards(k)%name .and. to_upper(cards(first)%text('NAME')) == &
-                  name) exit
-            end do
-            call self%error(cards(k)%place_of('NAME'), noun//' '//name//' is defined twice, '// &
-               'first on '//self%source%words_of(cards(first)%place))
-         end if
-      end associate
-      if (first < k .or. len(name) == 0) call self%lose(noun)
+      call need_parameter(self%card, 'NAME', self, name)
+      first = self%card_index
+      if (len(name) > 0 .and. self%index_of(noun, name) > 0) then
+         do first = 1, self%card_index - 1
+            associate (other => self%cards%keywords(first))
+               if (other%name == self%card%name .and. to_upper(other%text('NAME')) == name) exit
+            end associate
+         end do
+         call self%error(self%card%place_of('NAME'), noun//' '//name//' is defined twice, '// &
+            'first on '//self%source%words_of(self%cards%keywords(first)%place))
+      end if
+      if (first < self%card_index .or. len(name) == 0) call self%lose(noun)
       call self%add_name(noun, name)
    end subroutine take_name
 
    !> Index of the item that a parameter names, which the card must have; 0 after an error.
-   subroutine need_named(self, card, parameter, noun, index)
+   subroutine need_named(self, parameter, noun, index)
       class(deck_type), intent(inout) :: self           !! receives errors
-      type(keyword_card_type), intent(in) :: card
       character(*), intent(in) :: parameter             !! the parameter
       character(*), intent(in) :: noun                  !! what it names, such as material
       integer, intent(out) :: index
       character(:), allocatable :: name
 
       index = 0
-      call need_parameter(card, parameter, self, name)
-      if (len(name) > 0) call self%look_up(noun, name, card%place_of(parameter), index)
+      call need_parameter(self%card, parameter, self, name)
+      if (len(name) > 0) call self%look_up(noun, name, self%card%place_of(parameter), index)
    end subroutine need_named
 
    !> Index of the item that a parameter names, where the card has it; else it stays as it is.
-   subroutine take_named(self, card, parameter, noun, index)
+   subroutine take_named(self, parameter, noun, index)
       class(deck_type), intent(inout) :: self           !! receives errors
-      type(keyword_card_type), intent(in) :: card
       character(*), intent(in) :: parameter             !! the parameter
       character(*), intent(in) :: noun                  !! what it names, such as material
       integer, intent(inout) :: index                   !! 0 after an error
 
-      if (card%has(parameter)) call self%need_named(card, parameter, noun, index)
+      if (self%card%has(parameter)) call self%need_named(parameter, noun, index)
    end subroutine take_named
 
    !> Index of the item that a field of a data card names; 0 after an error.
@@ -194,8 +201,7 @@ contains
       if (valid) call self%look_up(noun, to_upper(name), data%place(position), index)
    end subroutine need_item
 
-   !> Indexes of the items that a field of a data card names, by a name or by a pattern; none after
-   !> an error.
+   !> Indexes of the items that a field means by a name or by a pattern; none after an error.
    subroutine need_items(self, data, position, noun, what, indexes)
       class(deck_type), intent(inout) :: self           !! receives errors
       type(data_card_type), intent(in) :: data
@@ -213,8 +219,7 @@ contains
       end if
    end subroutine need_items
 
-   !> Indexes of the items, among the first ones, whose names a field means by a pattern. That there
-   !> is none is an error.
+   !> Indexes of the items, among the first ones, that a field means by a pattern; none is an error.
    subroutine find_matches(self, data, position, noun, indexes, known)
       class(deck_type), intent(inout) :: self           !! receives the error
       type(data_card_type), intent(in) :: data
@@ -266,7 +271,6 @@ contains
       indexes = pack([(i, i=1, count)], .not. is_used)
    end function unused
 
-   !> Reports a name that no item has.
    subroutine report_unknown(self, noun, name, place, most)
       class(deck_type), intent(inout) :: self           !! receives the error
       character(*), intent(in) :: noun, name
@@ -298,16 +302,15 @@ contains
       call self%missing(place, message, noun, name)
    end subroutine report_unknown
 
-   !> Index of the element set that ELSET= of a card names; 0 after an error.
-   subroutine need_element_set(self, card, set)
+   !> Index of the element set that ELSET= of the card names; 0 after an error.
+   subroutine need_element_set(self, set)
       class(deck_type), intent(inout) :: self           !! receives errors
-      type(keyword_card_type), intent(in) :: card
       integer, intent(out) :: set
 
-      call self%need_named(card, 'ELSET', 'element set', set)
+      call self%need_named('ELSET', 'element set', set)
       if (set == 0) return
       if (.not. self%mesh%element_sets(set)%of_lines) return
-      call report_lines(self%mesh%element_sets(set)%name, card%place_of('ELSET'), self)
+      call report_lines(self%mesh%element_sets(set)%name, self%card%place_of('ELSET'), self)
       set = 0
    end subroutine need_element_set
 

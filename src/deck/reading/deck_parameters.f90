@@ -1,5 +1,4 @@
-!> *PARAMETER: names with values, used as <name> in the deck, and the command line's --set that
-!> overrides them.
+!> *PARAMETER: names with values, used as <name> in the deck, and --set that overrides them.
 module deck_parameters
    use arithmetic, only: arithmetic_fault_type, evaluate, is_arithmetic
    use card_fields, only: first_text, last_text, without_quotes
@@ -19,18 +18,16 @@ module deck_parameters
 
    !> The parameters of a deck.
    type :: deck_parameters_type
-      private
-      type(name_index_type) :: names
-      type(string_type), allocatable :: values(:)           !! their values
-      type(name_index_type) :: settings                     !! names that --set gives
-      type(string_type), allocatable :: setting_names(:)    !! the same as given
-      type(string_type), allocatable :: setting_values(:)   !! their values
+      type(name_index_type) :: names                                 !! those that are defined
+      type(string_type), allocatable, private :: values(:)           !! their values
+      type(name_index_type), private :: settings                     !! names that --set gives
+      type(string_type), allocatable, private :: setting_names(:)    !! the same as given
+      type(string_type), allocatable, private :: setting_values(:)   !! their values
    contains
       procedure :: take_settings
       procedure :: define
       procedure :: substitute
       procedure :: check_settings
-      procedure :: known => known_names
    end type deck_parameters_type
 
 contains
@@ -196,20 +193,11 @@ contains
       do i = 1, size(self%setting_names)
          associate (name => self%setting_names(i)%value)
             if (self%names%find(name) > 0) cycle
-            call report%missing(place_type(), '--set '// &
-               name//': no *PARAMETER of the deck has this name'// &
-               nearest_known(to_upper(name), self%names%known()), 'parameter', name)
+            call report%missing(place_type(), '--set '//name//': no *PARAMETER of the deck has '// &
+               'this name'//nearest_known(to_upper(name), self%names%known()), 'parameter', name)
          end associate
       end do
    end subroutine check_settings
-
-   !> The names that are defined.
-   pure function known_names(self) result(names)
-      class(deck_parameters_type), intent(in) :: self
-      type(string_type), allocatable :: names(:)           !! in upper case
-
-      names = self%names%known()
-   end function known_names
 
    !> A text of the command line without the blanks around it, as fields of a deck are.
    pure function without_blanks_around(string) result(bare)

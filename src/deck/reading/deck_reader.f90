@@ -6,10 +6,9 @@ module deck_reader
    use cards, only: cards_type, trim_cards
    use deck_report, only: deck_report_type
    use deck_source, only: earlier_deck_type, place_type, read_lines
-   use deck_structure, only: check_data_counts
+   use deck_structure, only: check_data_counts, repeat_steps
    use generated_cards, only: generate_cards
    use keywords, only: keyword_lines
-   use repeated_steps, only: repeat_steps
    use text, only: append, string_type, to_text, to_upper, without_blanks
    use utf8, only: first_byte
    implicit none
@@ -29,8 +28,8 @@ contains
       character(*), intent(in) :: path                  !! the deck as given
       integer, intent(in) :: width                      !! --width, 0 for none
       type(string_type), intent(in) :: settings(:)      !! --set, each NAME=VALUE
-      type(cards_type), intent(out) :: cards
-      type(deck_report_type), intent(out) :: report     !! what is wrong with it
+      type(cards_type), intent(out), target :: cards
+      type(deck_report_type), intent(out), target :: report     !! what is wrong with it
       type(earlier_deck_type), intent(in), optional :: earlier   !! the deck of a result
       type(card_lines_type) :: open_lines
       character(:), allocatable :: fault
@@ -47,9 +46,8 @@ contains
       call repeat_steps(cards, report)
       if (len(fault) > 0) then
          inquire (file=path, exist=exists)
-         if (.not. exists .and. index(path, '.inp', back=.true.) /= len(path) - 3) then
-            fault = fault//', and no '//path//'.inp'
-         end if
+         if (.not. exists .and. index(path, '.inp', back=.true.) /= len(path) - 3) fault = fault// &
+            ', and no '//path//'.inp'
          call report%error(place_type(), 'the deck cannot be read: '//fault)
       else if (size(cards%keywords) == 0 .and. .not. report%has_errors()) then
          call report%error(place_type(), 'the deck is empty')
@@ -73,8 +71,8 @@ contains
       type(string_type), intent(in) :: settings(:)      !! --set, each NAME=VALUE
       type(string_type), allocatable :: files(:)        !! their paths
       type(card_lines_type) :: open_lines
-      type(cards_type) :: cards
-      type(deck_report_type) :: report
+      type(cards_type), target :: cards
+      type(deck_report_type), target :: report
       character(:), allocatable :: fault
 
       call read_all_lines(path, settings, open_lines, cards, report, fault)
@@ -88,23 +86,24 @@ contains
       type(string_type), allocatable, intent(out) :: names(:)   !! in upper case
       character(:), allocatable, intent(out) :: fault   !! why the deck is not read; else empty
       type(card_lines_type) :: open_lines
-      type(cards_type) :: cards
-      type(deck_report_type) :: report
+      type(cards_type), target :: cards
+      type(deck_report_type), target :: report
 
       call read_all_lines(path, settings, open_lines, cards, report, fault)
-      names = open_lines%parameters%known()
+      names = open_lines%parameters%names%known()
    end subroutine parameters_of_deck
 
-   !> Reads all lines of a deck into cards as they are written.
    subroutine read_all_lines(path, settings, open_lines, cards, report, fault)
       character(*), intent(in) :: path
       type(string_type), intent(in) :: settings(:)
       type(card_lines_type), intent(inout) :: open_lines
-      type(cards_type), intent(inout) :: cards
-      type(deck_report_type), intent(inout) :: report
+      type(cards_type), intent(inout), target :: cards
+      type(deck_report_type), intent(inout), target :: report
       character(:), allocatable, intent(out) :: fault        ! why it is not read; else empty
       type(string_type), allocatable :: none(:)
 
+      open_lines%cards => cards
+      open_lines%report => report
       cards%path = path
       report%path = path
       allocate (report%source%paths(0), cards%files(0), none(0))
@@ -112,21 +111,19 @@ contains
       if (allocated(report%source%earlier)) then
          call append(report%source%paths, path)
          call append(report%source%paths, report%source%earlier%path)
-         call take_earlier(1, report%source%earlier%steps, open_lines, cards, report)
+         call take_earlier(1, report%source%earlier%steps, open_lines)
       end if
-      call read_file(path, path, none, open_lines, cards, report, fault)
-      call take_earlier_steps(open_lines, cards, report)
-      call open_lines%finish(cards, report)
+      call read_file(path, path, none, open_lines, fault)
+      call take_earlier_steps(open_lines)
+      call open_lines%finish()
    end subroutine read_all_lines
 
    !> Reads one file, and the files that it includes where it includes them.
-   recursive subroutine read_file(path, found, above, open_lines, cards, report, fault)
+   recursive subroutine read_file(path, found, above, open_lines, fault)
       character(*), intent(in) :: path                       !! file as given, for messages
       character(*), intent(in) :: found                      !! file as seen from the current folder
       type(string_type), intent(in) :: above(:)              !! files that include it
       type(card_lines_type), intent(inout) :: open_lines     !! what is open
-      type(cards_type), intent(inout) :: cards               !! receives the cards
-      type(deck_report_type), intent(inout) :: report        !! receives errors
       character(:), allocatable, intent(out) :: fault        !! why it is not read; else empty
       type(string_type), allocatable :: lines(:), open_files(:)
       character(:), allocatable :: target_path, included, include_fault
@@ -138,78 +135,72 @@ contains
       if (len(fault) > 0) return
       ! The paths of a deck that goes on from a result are there before its lines.
       file = 1
-      if (size(above) > 0 .or. size(report%source%paths) == 0) then
-         call append(report%source%paths, path)
-         file = size(report%source%paths)
+      if (size(above) > 0 .or. size(open_lines%report%source%paths) == 0) then
+         call append(open_lines%report%source%paths, path)
+         file = size(open_lines%report%source%paths)
       end if
-      call append(cards%files, found)
+      call append(open_lines%cards%files, found)
       open_files = above
       call append(open_files, plain(found))
       do i = 1, size(lines)
-         if (allocated(report%source%earlier)) then
-            if (keyword_of(lines(i)%value) == 'STEP') call take_earlier_steps(open_lines, cards, &
-               report)
+         if (allocated(open_lines%report%source%earlier)) then
+            if (keyword_of(lines(i)%value) == 'STEP') call take_earlier_steps(open_lines)
          end if
-         call report%source%add_image(file, i, lines(i)%value)
-         call open_lines%take_line(lines(i)%value, report%source%count, cards, report)
+         call open_lines%report%source%add_image(file, i, lines(i)%value)
+         call open_lines%take_line(lines(i)%value, open_lines%report%source%count)
          if (.not. allocated(open_lines%include)) cycle
          call move_alloc(open_lines%include, included)
          place = open_lines%include_place
          target_path = plain(beside(found, included))
          if (any([(open_files(k)%value == target_path, k=1, size(open_files))])) then
-            call report%error(place, included//' is already open: it would include itself')
+            call open_lines%report%error(place, included//' is already open: it would include '// &
+               'itself')
             cycle
          else if (size(open_files) == deepest_include) then
-            call report%error(place, 'more than '//to_text(deepest_include)// &
+            call open_lines%report%error(place, 'more than '//to_text(deepest_include)// &
                ' files include each other', too_many)
-            call report%lose()
+            call open_lines%report%lose()
             cycle
-         else if (size(report%source%paths) == most_files) then
-            call report%error(place, 'the deck has more than '//to_text(most_files)//' files', &
-               too_many)
-            call report%lose()
+         else if (size(open_lines%report%source%paths) == most_files) then
+            call open_lines%report%error(place, 'the deck has more than '//to_text(most_files)// &
+               ' files', too_many)
+            call open_lines%report%lose()
             cycle
          end if
-         call read_file(included, beside(found, included), open_files, open_lines, cards, report, &
-            include_fault)
+         call read_file(included, beside(found, included), open_files, open_lines, include_fault)
          if (len(include_fault) == 0) cycle
-         call report%error(place, included//' cannot be read: '//include_fault)
-         call report%lose()
+         call open_lines%report%error(place, included//' cannot be read: '//include_fault)
+         call open_lines%report%lose()
       end do
    end subroutine read_file
 
    !> Reads the steps of the earlier deck, where there is one and they are not read yet.
-   subroutine take_earlier_steps(open_lines, cards, report)
+   subroutine take_earlier_steps(open_lines)
       type(card_lines_type), intent(inout) :: open_lines
-      type(cards_type), intent(inout) :: cards
-      type(deck_report_type), intent(inout) :: report
 
-      if (.not. allocated(report%source%earlier)) return
-      associate (earlier => report%source%earlier)
-         call take_earlier(earlier%steps + 1, size(earlier%images), open_lines, cards, report)
+      if (.not. allocated(open_lines%report%source%earlier)) return
+      associate (earlier => open_lines%report%source%earlier)
+         call take_earlier(earlier%steps + 1, size(earlier%images), open_lines)
       end associate
-      deallocate (report%source%earlier)
+      deallocate (open_lines%report%source%earlier)
    end subroutine take_earlier_steps
 
-   !> Reads lines of the earlier deck, which has those of included files behind *INCLUDE. Its checks
-   !> were judged in its run.
-   subroutine take_earlier(first, last, open_lines, cards, report)
+   !> Reads lines of the earlier deck, those of included files among them, without its *VERIFY.
+   subroutine take_earlier(first, last, open_lines)
       integer, intent(in) :: first, last                     ! images
       type(card_lines_type), intent(inout) :: open_lines
-      type(cards_type), intent(inout) :: cards
-      type(deck_report_type), intent(inout) :: report
       integer :: i
       logical :: is_check
       character(:), allocatable :: keyword
 
       is_check = .false.
       do i = first, last
-         associate (line => report%source%earlier%images(i)%value)
+         associate (line => open_lines%report%source%earlier%images(i)%value)
             keyword = keyword_of(line)
             if (keyword /= '') is_check = keyword == 'VERIFY'
             if (is_check) cycle
-            call report%source%add_image(2, i, line)
-            call open_lines%take_line(line, report%source%count, cards, report)
+            call open_lines%report%source%add_image(2, i, line)
+            call open_lines%take_line(line, open_lines%report%source%count)
             if (allocated(open_lines%include)) deallocate (open_lines%include)
          end associate
       end do

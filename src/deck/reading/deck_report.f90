@@ -1,11 +1,10 @@
 !> Errors and warnings of a deck with their places, printed in one go.
 module deck_report
-   use card_echo, only: column_of, print_card, without_numbers
-   use deck_source, only: deck_source_type, place_type
+   use deck_source, only: column_of, print_card, without_numbers, deck_source_type, place_type
    use sorting, only: sort_order
    use messages, only: message_type, print_line
    use name_index, only: name_index_type
-   use text, only: counted, string_type, to_text, to_upper
+   use text, only: append, counted, string_type, to_text, to_upper
    implicit none
    private
    public :: deck_report_type, frictionless, heatless
@@ -35,8 +34,7 @@ module deck_report
       character(:), allocatable :: name   !! in upper case; empty for any
    end type lost_type
 
-   !> A message in the order of the deck. Where it is one mistake on many lines of a card, the first
-   !> of them tells it for all.
+   !> A message in the order of the deck. It may stand for further lines with the same mistake.
    type :: printed_diagnostic_type
       integer :: index = 0        !! of the diagnostic
       integer :: more_lines = 0   !! further lines with the mistake, which are not told
@@ -97,8 +95,7 @@ contains
       call self%error(place, message)
    end subroutine root_cause
 
-   !> Warns of what is hardly meant. Errors on its card image follow from it and are replaced by
-   !> this message.
+   !> Warns of what is hardly meant. Errors on its card image follow from it: it replaces them.
    subroutine possible_cause(self, place, message)
       class(deck_report_type), intent(inout) :: self
       type(place_type), intent(in) :: place           !! where
@@ -151,8 +148,7 @@ contains
       end do
    end function root_cause_of
 
-   !> Reports that something is not there, unless a reported error may hide its definition; one name
-   !> is told once.
+   !> Reports once that something is not there, unless a reported error may hide its definition.
    subroutine missing(self, place, message, noun, name)
       class(deck_report_type), intent(inout) :: self
       type(place_type), intent(in) :: place           !! where
@@ -240,17 +236,13 @@ contains
    function warnings(self) result(lines)
       class(deck_report_type), intent(in) :: self
       type(string_type), allocatable :: lines(:)      !! one a warning
-      type(printed_diagnostic_type), allocatable :: told(:)
-      type(message_type) :: message
+      type(message_type), allocatable :: list(:)
       integer :: i
 
-      told = told_by(self)
-      told = pack(told, [(self%diagnostics(told(i)%index)%severity == severity_warning, &
-         i=1, size(told))])
-      allocate(lines(size(told)))
-      do i = 1, size(told)
-         message = message_of(self, told(i))
-         lines(i)%value = message%as_line()
+      list = self%messages()
+      allocate (lines(0))
+      do i = 1, size(list)
+         if (list(i)%severity == 'warning') call append(lines, list(i)%as_line())
       end do
    end function warnings
 
@@ -270,8 +262,7 @@ contains
       end do
    end function first_error
 
-   !> Prints errors and warnings in the order of the deck, each with its card image and a caret; at
-   !> most 50 errors.
+   !> Prints warnings and at most 50 errors in the order of the deck, with their cards and carets.
    subroutine print_report(self, unit)
       class(deck_report_type), intent(in) :: self
       integer, intent(in) :: unit                     !! open for formatted output

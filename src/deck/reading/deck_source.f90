@@ -1,13 +1,15 @@
-!> The lines of a deck as they are in its files: the deck itself and, where they are included, the
-!> others.
+!> The lines of a deck as they are in its files: the deck itself, and those that it includes; and as
+!> messages show them, with a caret under the place that is meant.
 module deck_source
    use card_places, only: place_type
    use file_calls, only: read_file
+   use messages, only: print_line
    use text, only: string_type, to_text
-   use utf8, only: as_utf8
+   use utf8, only: as_utf8, character_count, first_byte, printable
    implicit none
    private
-   public :: deck_source_type, earlier_deck_type, place_type, read_lines
+   public :: deck_source_type, earlier_deck_type, place_type, read_lines, print_card, column_of, &
+      without_numbers
 
    integer, parameter :: first_capacity = 1024   !! images before the list grows for the first time
    integer, parameter :: most_bytes = 1000000000   !! of a file
@@ -30,8 +32,11 @@ module deck_source
    contains
       procedure :: add_image
       procedure :: words_of
-      procedure :: address_of
    end type deck_source_type
+
+   integer, parameter :: longest_echo = 200     !! characters of a card that are printed
+   integer, parameter :: echo_before = 100      !! of these, before the place that is meant
+   character(*), parameter :: gap = '...'       !! where characters are left out
 
 contains
 
@@ -72,15 +77,6 @@ contains
       if (self%file(place%image) > 1) words = words//' of '// &
          self%paths(self%file(place%image))%value
    end function words_of
-
-   !> A place as messages begin, such as 'deck.inp:12'.
-   pure function address_of(self, place) result(address)
-      class(deck_source_type), intent(in) :: self
-      type(place_type), intent(in) :: place           !! with an image
-      character(:), allocatable :: address
-
-      address = self%paths(self%file(place%image))%value//':'//to_text(self%line(place%image))
-   end function address_of
 
    !> The lines of a text file in UTF-8, with ends of line in the manner of Unix or Windows.
    subroutine read_lines(path, lines, fault)
@@ -123,8 +119,7 @@ contains
       end do
    end subroutine read_lines
 
-   !> Why the contents of a file are no text in UTF-8 or Latin-1 with ends of line; empty where they
-   !> are.
+   !> Why the contents of a file are no text in UTF-8 or Latin-1 with ends of line; else empty.
    pure function text_fault(contents) result(fault)
       character(*), intent(in) :: contents
       character(:), allocatable :: fault
@@ -165,5 +160,73 @@ contains
          return
       end do
    end function text_fault
+
+   !> Prints a card, or the part of a long one about a byte, and below it a caret under this byte.
+   !> Each tab is shown as one blank.
+   subroutine print_card(unit, image, column)
+      integer, intent(in) :: unit          !! open for formatted output
+      character(*), intent(in) :: image    !! the card
+      integer, intent(in) :: column        !! the byte, which may be the one behind the card
+      character(:), allocatable :: before, behind
+      integer :: room
+
+      before = shown(image(:column - 1))
+      behind = shown(image(column:))
+      room = longest_echo
+      if (character_count(before) + character_count(behind) > longest_echo) then
+         if (character_count(before) > echo_before) before = gap//before(first_byte(before, &
+            character_count(before) - echo_before + len(gap) + 1):)
+         room = longest_echo - character_count(before)
+         if (character_count(behind) > room) behind = behind(:first_byte(behind, &
+            room - len(gap) + 1) - 1)//gap
+      end if
+      call print_line(unit, before//behind)
+      call print_line(unit, repeat(' ', character_count(before))//'^')
+   end subroutine print_card
+
+   pure function shown(part) result(string)
+      character(*), intent(in) :: part
+      character(:), allocatable :: string
+      character(len(part)) :: untabbed
+      integer :: i
+
+      untabbed = part
+      do i = 1, len(part)
+         if (part(i:i) == achar(9)) untabbed(i:i) = ' '
+      end do
+      string = printable(untabbed)
+   end function shown
+
+   !> Column of a byte, which may be behind the line: a character of several bytes is one column.
+   pure integer function column_of(image, byte)
+      character(*), intent(in) :: image
+      integer, intent(in) :: byte
+
+      column_of = character_count(image(:min(byte - 1, len(image)))) + 1 + &
+         max(0, byte - 1 - len(image))
+   end function column_of
+
+   !> A message with one mark for each run of digits.
+   pure function without_numbers(message) result(kind)
+      character(*), intent(in) :: message   !! any
+      character(:), allocatable :: kind
+      character(*), parameter :: digits = '0123456789'
+      character(len(message)) :: buffer
+      integer :: i, n
+      logical :: is_digit, was_digit
+
+      n = 0
+      was_digit = .false.
+      do i = 1, len(message)
+         is_digit = index(digits, message(i:i)) > 0
+         if (.not. (is_digit .and. was_digit)) then
+            n = n + 1
+            buffer(n:n) = message(i:i)
+            if (is_digit) buffer(n:n) = '0'
+         end if
+         was_digit = is_digit
+      end do
+      kind = buffer(:n)
+   end function without_numbers
 
 end module deck_source

@@ -65,8 +65,15 @@ contains
             return
          end do
       end do
-      message = refusal_of(name)
-      if (len(message) == 0) message = 'unknown element type '//name//nearest_known(name, names)
+      message = 'element type '//name//' is refused: '
+      if (index(name, 'C3D') == 1 .or. index(name, 'DC3D') == 1) then
+         message = message//'models are two-dimensional'
+      else if (name == 'M3D9') then
+         message = message//'quadrilaterals of second order have 8 nodes; in gmsh set '// &
+            'Mesh.SecondOrderIncomplete = 1'
+      else
+         message = 'unknown element type '//name//nearest_known(name, names)
+      end if
    end subroutine take_element_type
 
    !> The type of this program that has the shape functions and points of one of Abaqus.
@@ -101,23 +108,6 @@ contains
          '; its temperatures are quadratic, as its displacements'
       if (index(name(4:), 'H') > 0) words = words//'; it has no pressure of its own'
    end function difference
-
-   !> Why a type cannot be used, and which one to take; empty for one that nobody knows.
-   pure function refusal_of(name) result(message)
-      character(*), intent(in) :: name   ! as in the deck
-      character(:), allocatable :: message
-      character(:), allocatable :: reason
-
-      reason = ''
-      if (index(name, 'C3D') == 1 .or. index(name, 'DC3D') == 1) then
-         reason = 'models are two-dimensional'
-      else if (name == 'M3D9') then
-         reason = 'quadrilaterals of second order have 8 nodes; in gmsh set '// &
-            'Mesh.SecondOrderIncomplete = 1'
-      end if
-      message = ''
-      if (len(reason) > 0) message = 'element type '//name//' is refused: '//reason
-   end function refusal_of
 
    !> Fields of the data card of an element type; 0 for a type that cannot be used.
    pure integer function element_type_fields(name)

@@ -1,16 +1,15 @@
 !> *NGEN, *NFILL, *NCOPY, *ELGEN and *ELCOPY -> the *NODE and *ELEMENT cards that they stand for.
 module generated_cards
-   use card_parameters, only: choice, take_parameter
-   use card_values, only: read_row
+   use card_values, only: choice, need_parameter, take_parameter, read_row
    use cards, only: add_data, add_keyword, cards_type, data_card_type, keyword_card_type, &
       replace_cards
-   use copied_cards, only: copy_elements, copy_nodes, fill_nodes
    use deck_report, only: deck_report_type
-   use given_cards, only: add_generated, add_numbers, add_set, corners_of, &
-      card_of, growing_cards_type, is_given, keep_last, node_place
+   use given_cards, only: add_generated, add_numbers, add_set, card_of, corners_of, &
+      growing_cards_type, is_given, keep_last, members_of, node_place, axis_layout, motion_type, &
+      read_motion, rotation
    use kinds, only: dp
-   use plane_motions, only: rotation
-   use text, only: to_text
+   use number_lists, only: number_list_type
+   use text, only: read_integer, to_text, to_upper
    implicit none
    private
    public :: generate_cards
@@ -29,6 +28,10 @@ module generated_cards
    type, extends(given_point_type) :: given_circle_type
       real(dp) :: angle = 0.0_dp       !! from the first node to the last [rad]
    end type given_circle_type
+
+   integer, parameter :: most_intervals = 10000   !! of *NFILL
+
+   real(dp), parameter :: same_place = 1.0e-6_dp   !! distance, by the largest coordinate
 
 contains
 
@@ -83,8 +86,7 @@ contains
          any(card%name == [character(5) :: 'NGEN', 'ELGEN', 'NFILL', 'NCOPY'])
    end function generates
 
-   !> First and last node, increment: the nodes between the two, at equal distances on a line or,
-   !> with LINE=C, on a circle.
+   !> First and last node, increment: nodes at equal distances on a line or, with LINE=C, a circle.
    subroutine generate_nodes(card, data, all)
       type(keyword_card_type), intent(in) :: card
       type(data_card_type), intent(in) :: data
@@ -140,7 +142,6 @@ contains
       end do
    end subroutine generate_nodes
 
-   !> A node of the cards so far, and its place.
    subroutine find_given_node(data, i, number, all, node)
       type(data_card_type), intent(in) :: data
       integer, intent(in) :: i                ! position of the field
@@ -231,5 +232,211 @@ contains
          end do
       end do
    end subroutine generate_elements
+
+   !> *NFILL: nodes between those of two sets, in the order of their numbers, at equal distances or,
+   !> with BIAS=, at distances of which each is the one behind it times the bias. A data card has
+   !> two sets or nodes, number of intervals, increment.
+   subroutine fill_nodes(card, data, bias, all)
+      type(keyword_card_type), intent(in) :: card
+      type(data_card_type), intent(in) :: data
+      real(dp), intent(in) :: bias
+      type(growing_cards_type), intent(inout) :: all            !! receives the cards
+      integer, allocatable :: from(:), to(:)
+      real(dp) :: given(4), x(2, 2)
+      real(dp), allocatable :: parts(:)
+      integer :: i, intervals, k, step
+      logical :: valid
+
+      call read_row(data, '@set or node/@set or node/#number of intervals >0/#increment? >0 =1', &
+         all%report, given, valid)
+      intervals = nint(given(3))
+      step = nint(given(4))
+      call end_of_fill(data, 1, all, from, valid)
+      call end_of_fill(data, 2, all, to, valid)
+      if (valid .and. intervals > most_intervals) then
+         call all%report%error(data%place(3), 'the number of intervals is from 1 to '// &
+            to_text(most_intervals))
+         valid = .false.
+      else if (valid .and. size(from) /= size(to)) then
+         call all%report%error(data%place(2), 'the two ends have '//to_text(size(from))//' and '// &
+            to_text(size(to))//' nodes; give sets of as many nodes')
+         valid = .false.
+      end if
+      if (.not. valid) then
+         call all%report%lose('node')
+         return
+      end if
+      call add_set(card, 'NSET', data, [from, to], all)
+      if (intervals > 1) call add_generated(card, 'NODE', '', all)
+      allocate (parts(0:intervals), source=0.0_dp)
+      do k = 1, intervals
+         parts(k) = parts(k - 1) + bias**(1 - k)
+      end do
+      do i = 1, size(from)
+         x(:, 1) = node_place(all, from(i))
+         x(:, 2) = node_place(all, to(i))
+         do k = 1, intervals - 1
+            call add_numbers(data, [from(i) + k*step], all, x(:, 1) + (x(:, 2) - x(:, 1))*(parts( &
+               k)/ parts(intervals)))
+         end do
+      end do
+   end subroutine fill_nodes
+
+   !> A node set, or one node, of the cards so far.
+   subroutine end_of_fill(data, i, all, numbers, valid)
+      type(data_card_type), intent(in) :: data
+      integer, intent(in) :: i                          ! position of the field
+      type(growing_cards_type), intent(in) :: all
+      integer, allocatable, intent(out) :: numbers(:)
+      logical, intent(inout) :: valid
+      integer :: k, number
+      logical :: is_number
+
+      call read_integer(data%text(i), number, is_number)
+      numbers = [number]
+      if (.not. is_number) numbers = members_of(all, 'NSET', data%text(i))
+      numbers = pack(numbers, [(is_given(numbers(k), all%nodes), k=1, size(numbers))])
+      if (size(numbers) > 0) return
+      call all%report%error(data%place(i), 'no *NODE before this card has node or set '// &
+         to_upper(data%text(i)))
+      valid = .false.
+   end subroutine end_of_fill
+
+   !> *NCOPY: copies of the nodes of a set, shifted and then turned about an axis along z, MULTIPLE=
+   !> times, or reflected at a line. A copy that is there already, as on a seam, is that node.
+   subroutine copy_nodes(card, all)
+      type(keyword_card_type), intent(in) :: card
+      type(growing_cards_type), intent(inout) :: all            !! receives the cards
+      integer, allocatable :: numbers(:)
+      type(motion_type) :: motion
+      real(dp), allocatable :: x(:, :)
+      real(dp) :: points(6)
+      integer :: change, errors, i, times
+      logical, allocatable :: is_there(:)
+      logical :: valid
+
+      errors = all%report%error_count()
+      call take_old_set(card, 'NSET', all%nodes, all, numbers)
+      call need_shift(card, 'CHANGE NUMBER', all, change)
+      if (.not. card%has('REFLECT')) then
+         if (card%lacks('SHIFT')) call all%report%error(card%place, '*NCOPY needs SHIFT or '// &
+            'REFLECT=LINE')
+         times = 1
+         call take_parameter(card, 'MULTIPLE', all%report, times, '>=1')
+         call read_motion(card%data, times, all%report, motion)
+      else if (choice(card, 'REFLECT', 'LINE', all%report, '') == 'LINE') then
+         call read_row(card%data(1), axis_layout, all%report, points, valid)
+         associate (along => points(4:5) - points(1:2))
+            if (valid .and. norm2(along) <= 0.0_dp) call all%report%error( &
+               card%data(1)%place(1), 'the two points of the line coincide')
+            motion%turn = rotation(2*atan2(along(2), along(1)))
+         end associate
+         motion%turn(:, 2) = -motion%turn(:, 2)
+         motion%shift = points(1:2) - matmul(motion%turn, points(1:2))
+      end if
+      if (card%flawed .or. all%report%error_count() > errors) then
+         call all%report%lose('node')
+         return
+      end if
+      allocate (x(2, size(numbers)), is_there(size(numbers)))
+      do i = 1, size(numbers)
+         x(:, i) = motion%moved(node_place(all, numbers(i)))
+      end do
+      do i = 1, size(numbers)
+         is_there(i) = is_given(numbers(i) + change, all%nodes)
+         if (is_there(i)) is_there(i) = norm2(node_place(all, numbers(i) + change) - x(:, i)) <= &
+            same_place*maxval(abs(x))
+      end do
+      call add_copies_card(card, 'NODE', 'NSET', '', all)
+      do i = 1, size(numbers)
+         if (.not. is_there(i)) call add_numbers(card%data(1), [numbers(i) + change], all, x(:, i))
+      end do
+      if (.not. (any(is_there) .and. card%has('NEW SET'))) return
+      call add_copies_card(card, 'NSET', 'NSET', '', all)
+      call add_numbers(card%data(1), pack(numbers + change, is_there), all)
+   end subroutine copy_nodes
+
+   !> *ELCOPY: copies of the elements of a set; with REFLECT their nodes go round the other way.
+   subroutine copy_elements(card, all)
+      type(keyword_card_type), intent(in) :: card
+      type(growing_cards_type), intent(inout) :: all            !! receives the cards
+      character(:), allocatable :: kind, last_kind
+      integer, allocatable :: corners(:), numbers(:)
+      type(data_card_type) :: data
+      integer :: at(2), errors, i, n, node_shift, shift
+
+      errors = all%report%error_count()
+      call take_old_set(card, 'ELSET', all%elements, all, numbers)
+      call need_shift(card, 'ELEMENT SHIFT', all, shift)
+      call need_shift(card, 'SHIFT NODES', all, node_shift)
+      if (card%flawed .or. all%report%error_count() > errors) then
+         call all%report%lose('element')
+         return
+      end if
+      last_kind = ''
+      do i = 1, size(numbers)
+         at = card_of(numbers(i), all%elements)
+         kind = all%keywords(at(1))%text('TYPE')
+         if (kind /= last_kind) call add_copies_card(card, 'ELEMENT', 'ELSET', kind, all)
+         last_kind = kind
+         data = all%keywords(at(1))%data(at(2))
+         corners = corners_of(data)
+         if (card%has('REFLECT')) then   ! 1 4 3 2, and midside nodes 8 7 6 5
+            n = size(corners)
+            if (any(n == [6, 8])) n = n/2
+            corners = [corners(1), corners(n:2:-1), corners(size(corners):n + 1:-1)]
+         end if
+         data%fields = data%fields(:1)
+         data%fields(1)%place = card%place
+         call add_numbers(data, [numbers(i) + shift, corners + node_shift], all)
+      end do
+   end subroutine copy_elements
+
+   !> The nodes or elements of OLD SET=.
+   subroutine take_old_set(card, keyword, given, all, numbers)
+      type(keyword_card_type), intent(in) :: card
+      character(*), intent(in) :: keyword               ! NSET or ELSET
+      type(number_list_type), intent(in) :: given
+      type(growing_cards_type), intent(in) :: all
+      integer, allocatable, intent(out) :: numbers(:)
+      character(:), allocatable :: name
+      integer :: i
+
+      call need_parameter(card, 'OLD SET', all%report, name)
+      if (len(name) == 0) return
+      numbers = members_of(all, keyword, name)
+      numbers = pack(numbers, [(is_given(numbers(i), given), i=1, size(numbers))])
+      if (size(numbers) > 0) return
+      call all%report%error(card%place_of('OLD SET'), 'no card before this one gives set '//name// &
+         ' a node or element')
+   end subroutine take_old_set
+
+   subroutine need_shift(card, name, all, shift)
+      type(keyword_card_type), intent(in) :: card
+      character(*), intent(in) :: name                  ! of the parameter
+      type(growing_cards_type), intent(in) :: all
+      integer, intent(out) :: shift
+      character(:), allocatable :: text
+
+      shift = 0
+      call need_parameter(card, name, all%report, text)
+      call take_parameter(card, name, all%report, shift)
+   end subroutine need_shift
+
+   !> Adds the keyword card of copies, which are in the set NEW SET=.
+   subroutine add_copies_card(card, keyword, set, element_type, all)
+      type(keyword_card_type), intent(in) :: card
+      character(*), intent(in) :: keyword, set
+      character(*), intent(in) :: element_type          ! TYPE=, or empty
+      type(growing_cards_type), intent(inout) :: all
+      type(keyword_card_type) :: named
+      integer :: i
+
+      named = card
+      named%parameters = pack(card%parameters, [(card%parameters(i)%name == 'NEW SET', &
+         i=1, size(card%parameters))])
+      if (size(named%parameters) > 0) named%parameters(1)%name = set
+      call add_generated(named, keyword, element_type, all)
+   end subroutine add_copies_card
 
 end module generated_cards

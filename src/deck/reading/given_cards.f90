@@ -1,6 +1,7 @@
 !> Nodes and elements of the cards so far, and the cards that are added to them where a card stands
-!> for others.
+!> for others; motions of nodes by a translation and a rotation, which stay in the plane.
 module given_cards
+   use card_values, only: read_row
    use cards, only: add_data, add_keyword, cards_type, data_card_type, field_type, &
       keyword_card_type, parameter_type
    use deck_report, only: deck_report_type
@@ -12,8 +13,9 @@ module given_cards
    use text, only: append, read_integer, read_real, string_type, to_text, to_upper
    implicit none
    private
-   public :: growing_cards_type, add_set, add_generated, add_numbers
-   public :: node_place, keep_last, members_of, card_of, is_given, corners_of, exact_text
+   public :: growing_cards_type, add_set, add_generated, add_numbers, node_place, keep_last, &
+      members_of, card_of, is_given, corners_of, exact_text, motion_type, read_motion, rotation, &
+      axis_layout
 
    !> Cards that take the place of others, so far.
    type, extends(cards_type) :: growing_cards_type
@@ -21,6 +23,21 @@ module given_cards
       type(number_list_type) :: nodes, elements
       type(deck_report_type), pointer :: report => null()         !! what is wrong with the deck
    end type growing_cards_type
+
+   !> Two points of an axis, as read_row.
+   character(*), parameter :: axis_layout = 'x of point 1?/y of point 1?/z of point 1?/'// &
+      'x of point 2?/y of point 2?/z of point 2? =1'
+
+   real(dp), parameter :: degree = acos(-1.0_dp)/180
+   real(dp), parameter :: negligible = 1.0e-9_dp   !! part of a direction or distance
+
+   !> What becomes of a place x: turn x + shift.
+   type :: motion_type
+      real(dp) :: turn(2, 2) = reshape([1.0_dp, 0.0_dp, 0.0_dp, 1.0_dp], [2, 2])
+      real(dp) :: shift(2) = 0.0_dp   !! [length]
+   contains
+      procedure :: moved
+   end type motion_type
 
 contains
 
@@ -93,8 +110,7 @@ contains
       end do
    end function node_place
 
-   !> Remembers the node or element of the last data card; fields that are no numbers are reported
-   !> elsewhere.
+   !> Remembers the node or element of the last data card; what is no number is reported elsewhere.
    subroutine keep_last(all)
       type(growing_cards_type), intent(inout) :: all
       integer :: number
@@ -110,8 +126,7 @@ contains
       end associate
    end subroutine keep_last
 
-   !> Numbers of a set of the cards so far, each once and ascending. What is no number and no set so
-   !> far is reported elsewhere.
+   !> Numbers of a set of the cards so far, each once and ascending; others are reported elsewhere.
    function members_of(all, keyword, name) result(numbers)
       type(growing_cards_type), intent(in) :: all
       character(*), intent(in) :: keyword           !! NSET or ELSET
@@ -120,53 +135,39 @@ contains
       type(string_type), allocatable :: names(:)    ! of it and the sets in it, each once
       type(name_index_type) :: known                ! the same names
       type(number_list_type) :: found
-      integer :: k, n
+      integer :: i, j, k, n, number, range(3)
+      logical :: is_set, valid
 
       call add_name(name, known, names)
       n = 0
       do while (n < size(names))
          n = n + 1
          do k = 1, all%keyword_count
-            if (to_upper(all%keywords(k)%text(keyword)) /= names(n)%value) cycle
-            call add_members(all%keywords(k), keyword, found, known, names)
+            associate (card => all%keywords(k))
+               if (to_upper(card%text(keyword)) /= names(n)%value) cycle
+               is_set = card%name == keyword
+               if (.not. (is_set .or. any(card%name == ['NODE   ', 'ELEMENT']))) cycle
+               do j = 1, card%data_count
+                  range(3) = 1
+                  do i = 1, merge(size(card%data(j)%fields), 1, is_set)
+                     call read_integer(card%data(j)%text(i), number, valid)
+                     if (card%has('GENERATE')) then
+                        if (i <= 3) range(i) = number
+                     else if (valid) then
+                        call found%add([number])
+                     else if (is_set) then
+                        call add_name(card%data(j)%text(i), known, names)
+                     end if
+                  end do
+                  if (card%has('GENERATE') .and. range(3) > 0) call found%add([(i, i=range(1), &
+                     range(2), range(3))])
+               end do
+            end associate
          end do
       end do
       numbers = unique_sorted(found%numbers())
    end function members_of
 
-   !> Adds the members that one card gives a set: numbers, and names of other sets.
-   subroutine add_members(card, keyword, found, known, names)
-      type(keyword_card_type), intent(in) :: card
-      character(*), intent(in) :: keyword
-      type(number_list_type), intent(inout) :: found
-      type(name_index_type), intent(inout) :: known
-      type(string_type), allocatable, intent(inout) :: names(:)
-      integer :: i, j, number, range(3)
-      logical :: valid
-
-      do j = 1, card%data_count
-         associate (data => card%data(j))
-            if (card%name == keyword .and. card%has('GENERATE')) then
-               range(3) = 1
-               do i = 1, min(size(data%fields), 3)
-                  call read_integer(data%text(i), range(i), valid)
-               end do
-               if (range(3) > 0) call found%add([(i, i=range(1), range(2), range(3))])
-            else if (card%name == keyword) then
-               do i = 1, size(data%fields)
-                  call read_integer(data%text(i), number, valid)
-                  if (valid) call found%add([number])
-                  if (.not. valid) call add_name(data%text(i), known, names)
-               end do
-            else if (any(card%name == ['NODE   ', 'ELEMENT'])) then
-               call read_integer(data%text(1), number, valid)
-               if (valid) call found%add([number])
-            end if
-         end associate
-      end do
-   end subroutine add_members
-
-   !> Adds a name that is not there yet.
    subroutine add_name(name, known, names)
       character(*), intent(in) :: name
       type(name_index_type), intent(inout) :: known
@@ -177,13 +178,11 @@ contains
       call append(names, to_upper(name))
    end subroutine add_name
 
-   !> Keyword card and data card of a node or element, the last ones where there are several; 0
-   !> where it is not given.
+   !> Keyword card and data card of a node or element, of several the last ones; 0 for none.
    pure function card_of(number, given) result(card)
       integer, intent(in) :: number                 !! of a node or element
       type(number_list_type), intent(in) :: given   !! as of growing_cards_type
-      integer :: card(2)
-      integer :: at
+      integer :: card(2), at
 
       associate (list => given%numbers())
          at = findloc(list(1::3), number, dim=1, back=.true.)
@@ -224,5 +223,49 @@ contains
       write (buffer, '(es24.16e3)') value
       string = trim(adjustl(buffer))
    end function exact_text
+
+   !> A place behind the motion.
+   pure function moved(self, x)
+      class(motion_type), intent(in) :: self
+      real(dp), intent(in) :: x(2)                       !! [length]
+      real(dp) :: moved(2)                               !! [length]
+
+      moved = matmul(self%turn, x) + self%shift
+   end function moved
+
+   !> Reads a translation and, on a second card, axis and angle of the rotation that follows it.
+   subroutine read_motion(rows, times, report, motion)
+      type(data_card_type), intent(in) :: rows(:)
+      integer, intent(in) :: times                       !! the angle counts as often
+      class(deck_report_type), intent(inout) :: report   !! receives errors
+      type(motion_type), intent(out) :: motion           !! receives what is sound of it
+      real(dp) :: x(7)
+      logical :: valid
+
+      if (size(rows) == 0) return
+      call read_row(rows(1), 'translation along x?/translation along y?/translation along z?', &
+         report, x(:3), valid)
+      motion%shift = x(:2)
+      if (abs(x(3)) > negligible*maxval(abs(x(:3)))) call report%error(rows(1)%place(3), &
+         'models stay in the plane: the translation along z must be 0')
+      if (size(rows) == 1) return
+      call read_row(rows(2), axis_layout//'/angle in degrees?', report, x, valid)
+      if (.not. valid) return
+      associate (axis => x(4:6) - x(:3))
+         if (norm2(axis(:2)) > negligible*norm2(axis) .or. norm2(axis) <= 0.0_dp) call &
+            report%error(rows(2)%place(1), 'models stay in the plane: the axis of the rotation '// &
+            'is along z, such as 0., 0., 0., 0., 0., 1., 90.')
+         motion%turn = rotation(sign(times*degree, axis(3))*x(7))
+      end associate
+      motion%shift = x(:2) + matmul(motion%turn, motion%shift - x(:2))
+   end subroutine read_motion
+
+   !> Turns a place about the origin.
+   pure function rotation(angle)
+      real(dp), intent(in) :: angle                      !! anticlockwise [rad]
+      real(dp) :: rotation(2, 2)
+
+      rotation = reshape([cos(angle), sin(angle), -sin(angle), cos(angle)], [2, 2])
+   end function rotation
 
 end module given_cards

@@ -1,19 +1,25 @@
-!> Fields of a keyword card -> the card with its parameters, each of them known.
+!> Fields of a keyword card -> the card with its parameters, each of them known; typing errors that
+!> hide how a card is meant: a keyword without its asterisk, and commas that are missing.
 module keyword_cards
-   use card_fields, only: first_text, without_quotes
-   use card_typos, only: end_of_keyword, is_number
-   use cards, only: add_note, cards_type, field_type, keyword_card_type, parameter_type
+   use card_fields, only: first_text, last_text, without_quotes
    use card_values, only: decimal_comma_words
+   use cards, only: add_note, cards_type, field_type, keyword_card_type, parameter_type
    use deck_report, only: deck_report_type
    use deck_source, only: place_type
    use keywords, only: advice_type, built, find_abbreviated, find_advice, find_keyword, &
       find_parameter, is_output, is_word, known_keywords, known_names, known_parameter_type, &
-      not_needed, not_printed, parameter_names, passed_over, refused, refused_with_data, word_advice
+      no_advice, not_needed, not_printed, parameter_names, passed_over, refused, &
+      refused_with_data, word_advice
+   use kinds, only: dp
    use spelling, only: edit_distance, is_slip, nearest_name
-   use text, only: is_whole, string_type, to_upper
+   use text, only: is_whole, read_real, string_type, to_upper
    implicit none
    private
-   public :: make_keyword_card, is_parameter
+   public :: make_keyword_card, is_parameter, lacks_star, check_commas
+
+   character(*), parameter :: blanks = ' '//achar(9)    !! they separate words
+   character(*), parameter :: numerals = ' 0123456789+-.eEdD'
+   character(*), parameter :: signs = achar(9)//';'     !! no name and no number has them
 
 contains
 
@@ -191,8 +197,7 @@ contains
       card%parameters = found(:n)
    end subroutine take_parameters
 
-   !> Reports a number among the parameters: the decimals of a value, or the first of data that
-   !> are on the keyword card.
+   !> Reports a number among the parameters: decimals of a value, or data on the keyword card.
    subroutine report_number(fields, i, report)
       type(field_type), intent(in) :: fields(:)
       integer, intent(in) :: i
@@ -216,8 +221,7 @@ contains
          'of their own: write '//list//' below the keyword')
    end subroutine report_number
 
-   !> Takes one parameter and checks it against the table. A misspelt one is taken as the one that
-   !> it likely is.
+   !> Takes one parameter by the table; a misspelt one is taken as the one that it likely is.
    subroutine take_parameter(field, report, cards, card, parameter, valid)
       type(field_type), intent(in) :: field
       type(deck_report_type), intent(inout) :: report
@@ -272,9 +276,8 @@ contains
       valid = len(known%name) > 0 .and. len(fault) == 0 .and. known%status == built
       card%flawed = card%flawed .or. field%undefined .or. &
          (report%error_count() > errors .and. .not. valid)
-      if (len(known%name) > 0 .and. known%status == not_needed .and. &
-         report%error_count() == errors) call add_note(cards%notes, '*'//card%name//': '// &
-         known%name//' is ignored')
+      if (len(known%name) > 0 .and. known%status == not_needed .and. report%error_count() == &
+         errors) call add_note(cards%notes, '*'//card%name//': '//known%name//' is ignored')
    end subroutine take_parameter
 
    !> Reports a parameter that the keyword does not have, and finds the one that it likely is. On
@@ -301,9 +304,8 @@ contains
       i = nearest_name(name, names)
       if (i > 0 .and. len(hint) == 0) then
          if (is_slip(name, names(i)%value)) known = find_parameter(card%known, names(i)%value)
-         if (len(known%name) > 0 .or. is_near(name, names(i)%value)) then
-            hint = 'the nearest known is '//names(i)%value
-         end if
+         if (len(known%name) > 0 .or. is_near(name, names(i)%value)) hint = 'the nearest known '// &
+            'is '//names(i)%value
       end if
       if (is_output(card%name)) then
          if (len(known%name) > 0) then
@@ -332,5 +334,111 @@ contains
 
       is_near = 2*edit_distance(to_upper(name), known) <= len(name)
    end function is_near
+
+   !> Position of the blank behind the known keyword with which a field begins that goes on with a
+   !> parameter; 0 where it does not.
+   pure integer function end_of_keyword(string)
+      character(*), intent(in) :: string   !! with the star
+      type(known_parameter_type) :: parameter
+      integer :: known
+
+      do end_of_keyword = len(string), 3, -1
+         if (scan(string(end_of_keyword:end_of_keyword), blanks) == 0) cycle
+         known = find_keyword(string(2:end_of_keyword - 1))
+         if (known == 0) cycle
+         parameter = find_parameter(known, adjustl(string(end_of_keyword + 1:)))
+         if (len(parameter%name) > 0 .or. index(string, '=') > 0) return
+      end do
+      end_of_keyword = 0
+   end function end_of_keyword
+
+   !> Whether a data line is a keyword without its asterisk. A name that the deck uses may be that
+   !> of a keyword, and a heading may begin with one.
+   pure logical function lacks_star(line, title, cards)
+      character(*), intent(in) :: line        !! card image
+      logical, intent(in) :: title            !! whether it is part of the heading
+      type(cards_type), intent(in) :: cards   !! the cards so far
+      type(advice_type) :: advice
+      type(known_parameter_type) :: parameter
+      character(:), allocatable :: name, rest
+      integer :: comma, known
+
+      lacks_star = .false.
+      if (verify(to_upper(line(first_text(line):first_text(line))), &
+         'ABCDEFGHIJKLMNOPQRSTUVWXYZ') > 0) return
+      name = line(first_text(line):index(line//',', ',') - 1)
+      name = name(:last_text(name))
+      if (title .and. index(line, '=') == 0) return
+      known = find_keyword(name)
+      comma = index(line//',', ',')
+      lacks_star = .true.
+      do while (comma < len(line) .and. lacks_star)   ! what is behind it are parameters
+         rest = line(comma + 1:)
+         rest = rest(:index(rest//',', ',') - 1)
+         comma = comma + len(rest) + 1
+         if (index(rest, '=') > 0 .or. verify(rest, blanks) == 0) cycle
+         lacks_star = known > 0
+         if (known == 0) return
+         parameter = find_parameter(known, rest)
+         lacks_star = len(parameter%name) > 0
+      end do
+      if (lacks_star) lacks_star = .not. is_defined(cards, name)
+      if (known > 0 .or. .not. lacks_star) return
+      advice = find_advice(name)   ! last, since this takes longest
+      lacks_star = advice%kind /= no_advice
+   end function lacks_star
+
+   !> Whether a keyword card that is read defines or uses a name.
+   pure logical function is_defined(cards, name)
+      type(cards_type), intent(in) :: cards   !! the cards so far
+      character(*), intent(in) :: name        !! the name, in any case
+      integer :: i, k
+
+      is_defined = .false.
+      do k = 1, cards%keyword_count
+         do i = 1, size(cards%keywords(k)%parameters)
+            associate (string => cards%keywords(k)%parameters(i)%text)
+               is_defined = is_defined .or. to_upper(string) == to_upper(name)
+            end associate
+         end do
+      end do
+   end function is_defined
+
+   !> Reports the first field below a keyword in which a tab, a semicolon or a blank before a number
+   !> stands for a comma. Names may have blanks.
+   subroutine check_commas(cards, fields, report, valid)
+      type(cards_type), intent(in) :: cards               !! the cards so far
+      type(field_type), intent(in) :: fields(:)           !! fields of a line
+      type(deck_report_type), intent(inout) :: report     !! receives the error
+      logical, intent(out) :: valid                       !! false after it
+      character(:), allocatable :: next
+      integer :: blank, column, i
+
+      valid = .true.
+      do i = 1, size(fields)
+         associate (string => fields(i)%text)
+            blank = scan(string, blanks//signs)
+            if (blank == 0 .or. index(string, '"') > 0) cycle
+            if (is_defined(cards, string)) cycle
+            if (scan(string, signs) == 0 .and. .not. (verify(string(blank:), numerals) == 0 .and. &
+               (is_number(string(:blank - 1)) .or. is_defined(cards, string(:blank - 1))))) cycle
+            column = blank - 1 + verify(string(blank:), blanks//signs)
+            next = string(column:column - 2 + scan(string(column:)//' ', blanks//signs))
+            call report%error(place_type(fields(i)%place%image, fields(i)%place%column + column - &
+               1), 'a comma is missing between '''//string(:blank - 1)//''' and '''//next// &
+               ''': only commas separate fields')
+         end associate
+         valid = .false.
+         return
+      end do
+   end subroutine check_commas
+
+   !> Whether a field is a number.
+   pure logical function is_number(string)
+      character(*), intent(in) :: string   !! without blanks around it
+      real(dp) :: number
+
+      call read_real(string, number, is_number)
+   end function is_number
 
 end module keyword_cards

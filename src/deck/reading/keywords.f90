@@ -1,18 +1,14 @@
-!> The keywords of the dialect with their limits and parameters, and what to write in place of
-!> others, as one table.
+!> The keywords with their limits and parameters, and what to write in place of others, as a table.
 module keywords
    use spelling, only: full_word
    use text, only: append, is_same_name, split_words, string_type, to_text, to_upper, &
       without_blanks
    implicit none
    private
-   public :: keyword_type, known_keywords, find_keyword, known_names
-   public :: built, not_needed, refused
-   public :: in_model, in_step, in_both
-   public :: known_parameter_type, find_parameter, find_abbreviated, parameter_names, is_output
-   public :: advice_type, find_advice, word_advice, is_word
-   public :: no_advice, passed_over, not_printed, refused_with_data
-   public :: keyword_lines
+   public :: keyword_type, known_keywords, find_keyword, known_names, built, not_needed, refused, &
+      in_model, in_step, in_both, known_parameter_type, find_parameter, find_abbreviated, &
+      parameter_names, is_output, advice_type, find_advice, word_advice, is_word, no_advice, &
+      passed_over, not_printed, refused_with_data, keyword_lines
 
    integer, parameter :: built = 1        !! understood
    integer, parameter :: not_needed = 2   !! read, and means nothing to this program
@@ -372,8 +368,7 @@ contains
 
    !> The names of all keywords: first those of known_keywords, then those of other programs.
    pure function known_names() result(names)
-      type(string_type), allocatable :: names(:)
-      type(string_type), allocatable :: others(:)
+      type(string_type), allocatable :: names(:), others(:)
       integer :: i, k
 
       allocate(names(0))
@@ -558,8 +553,7 @@ contains
       end do
    end function word_advice
 
-   !> Whether an unknown keyword is itself a word that tells what is meant, so that its spelling
-   !> does not count.
+   !> Whether an unknown keyword is itself a word of advice, so that its spelling does not count.
    pure logical function is_word(name)
       character(*), intent(in) :: name         !! without the star
       integer :: i
