@@ -6,13 +6,14 @@
 !> of the mesh.
 module companion_states
    use, intrinsic :: ieee_arithmetic, only: ieee_is_nan
+   use contact_quantities, only: estimated_values
    use contact_system, only: contact_open
    use controls, only: implicit_scheme, start_closed, start_open, start_type
    use errors, only: error_type
    use heat_reduction, only: heat_reduction_type
    use increment_data, only: trial_type
    use increment_solution, only: begin_increment, recover_fields, solve_points
-   use interface_quantities, only: contacts_of_state, quantities_of
+   use increment_records, only: contacts_of_state
    use kinds, only: dp
    use model, only: model_type
    use records, only: contact_record_type
@@ -23,43 +24,38 @@ module companion_states
    use temperature_laws, only: law_jumps
    implicit none
    private
-   public :: find_other_states, implicit_state, implicit_step
+   public :: find_other_states, implicit_state
 
    real(dp), parameter :: tolerance = 1.0e-6_dp   !! of the fixed point; errors are far larger
 
 contains
 
-   !> A step without other starts, the gain and the last digits.
-   pure function implicit_step(step) result(companion)
-      type(step_type), intent(in) :: step   !! the step of the run
-      type(step_type) :: companion          !! the same, cheaper
-
-      companion = step
-      companion%start = start_type()
-      companion%fixed_point%finds_gain = .false.
-      companion%fixed_point%tolerance = max(tolerance, step%fixed_point%tolerance)
-      companion%scheme = implicit_scheme
-   end function implicit_step
-
-   !> Solves the end of an increment, with all of its fields.
+   !> Solves the end of an increment, with all of its fields, without the gain and the last digits.
    !> Error: it has no solution.
-   subroutine implicit_state(simulation, own, model, step, before, state, error)
+   subroutine implicit_state(simulation, model, asked, before, state, error)
       type(simulation_type), intent(in) :: simulation
-      type(heat_reduction_type), intent(inout) :: own        !! where the run has other films
       type(model_type), intent(in) :: model
-      type(step_type), intent(in) :: step                    !! from implicit_step
+      type(step_type), intent(in) :: asked                   !! the step of the run, another start
       type(solution_state_type), intent(in) :: before        !! at the start of the increment
       type(solution_state_type), intent(inout) :: state      !! guess in, solution out
       type(error_type), allocatable, intent(out) :: error
+      type(heat_reduction_type) :: own                       ! where the run has other films
+      type(step_type) :: step
 
+      step = asked
+      step%fixed_point%finds_gain = .false.
+      step%fixed_point%tolerance = max(tolerance, asked%fixed_point%tolerance)
+      step%scheme = implicit_scheme
       associate (bodies => simulation%bodies)
          if (simulation%heat_reductions(1)%serves(bodies, state%sources%film) .or. &
             .not. solves_heat(step%analysis)) then
             call solve_end(simulation%heat_reductions(1))
          else
+            own%forms_on_demand = simulation%heat_reductions(1)%forms_on_demand
             call own%share_order(simulation%heat_reductions(1), bodies)
             call own%reduce(model, bodies, state%sources%film, error)
             if (.not. allocated(error)) call solve_end(own)
+            call own%release()
          end if
       end associate
    contains
@@ -88,7 +84,6 @@ contains
       real(dp), intent(inout) :: farthest(:, :)
       integer, parameter :: kinds(2) = [start_open, start_closed]
       type(error_type), allocatable :: error
-      type(heat_reduction_type) :: heat
       type(solution_state_type) :: state
       type(step_type) :: from
       real(dp) :: own(size(farthest, 1), size(farthest, 2)), other(size(farthest, 1))
@@ -99,67 +94,43 @@ contains
       associate (bodies => simulation%bodies)
          if (.not. bodies%is_coupled .or. .not. any(law_jumps(bodies%laws%conductance))) return
          do i = 1, size(kinds)
-            from = implicit_step(model%steps(step))
+            from = model%steps(step)
             from%start = start_type(kind=kinds(i))
             state = simulation%state
-            call implicit_state(simulation, heat, model, from, before, state, error)
+            call implicit_state(simulation, model, from, before, state, error)
             if (allocated(error)) cycle
-            if (.not. is_beside(state%contact%contact_state, &
-               simulation%state%contact%contact_state, piece_starts(bodies))) cycle
+            if (.not. is_beside(bodies, state%contact%contact_state, &
+               simulation%state%contact%contact_state)) cycle
             call contacts_of_state(bodies, state, contacts)
             do k = 1, size(contacts)
-               other = quantities_of(contacts(k))
+               other = estimated_values(contacts(k))
                where (.not. ieee_is_nan(other - own(:, k))) farthest(:, k) = merge(other, &
                   farthest(:, k), abs(other - own(:, k)) > abs(farthest(:, k) - own(:, k)))
             end do
          end do
       end associate
-      call heat%release()
    end subroutine find_other_states
 
-   !> The first contact point of each piece of all interfaces, and the one behind the last.
-   pure function piece_starts(bodies) result(starts)
-      type(reduced_bodies_type), intent(in) :: bodies
-      integer, allocatable :: starts(:)
-      integer :: i
-
-      starts = [integer ::]
-      associate (start => bodies%points%interface_start)
-         do i = 1, size(bodies%interfaces)
-            associate (ends => bodies%interfaces(i)%ends())
-               starts = [starts, start(i) - 1 + ends(1::2)]
-            end associate
-         end do
-         starts = [starts, start(size(start))]
-      end associate
-   end function piece_starts
-
    !> Whether two contact states differ, and by no more than one contact point at each edge.
-   pure logical function is_beside(one, other, start)
-      integer, intent(in) :: one(:), other(:)       !! (m) open, slip or stick
-      integer, intent(in) :: start(:)               !! (pieces + 1) first contact points
-      integer :: i, k
+   pure logical function is_beside(bodies, one, other)
+      type(reduced_bodies_type), intent(in) :: bodies
+      integer, intent(in) :: one(:), other(:)       ! (m) open, slip or stick
+      logical, dimension(size(one)) :: differs, is_open
+      integer, allocatable :: beside(:)
+      integer :: first, i, k
 
-      is_beside = any([(differs(k), k=1, size(one))])
-      do i = 1, size(start) - 1
-         do k = start(i), start(i + 1) - 1
+      is_open = one == contact_open
+      differs = is_open .neqv. other == contact_open
+      is_beside = any(differs)
+      do i = 1, size(bodies%interfaces)
+         first = bodies%points%interface_start(i)
+         do k = first, bodies%points%interface_start(i + 1) - 1
             if (.not. differs(k)) cycle
-            associate (beside => [max(k - 1, start(i)), min(k + 1, start(i + 1) - 1)])
-               is_beside = is_beside .and. &
-                  any((one(beside) == contact_open) .neqv. (one(k) == contact_open)) .and. &
-                  .not. (k > start(i) .and. differs(max(k - 1, 1)))
-            end associate
+            beside = first - 1 + bodies%interfaces(i)%beside(k - first + 1)
+            is_beside = is_beside .and. any(is_open(beside) .neqv. is_open(k)) .and. &
+               .not. any(differs(beside))
          end do
       end do
-
-   contains
-
-      pure logical function differs(k)
-         integer, intent(in) :: k
-
-         differs = (one(k) == contact_open) .neqv. (other(k) == contact_open)
-      end function differs
-
    end function is_beside
 
 end module companion_states

@@ -5,22 +5,21 @@
 !> and two increments for each of the run (ERRORS=FULL). Contact points, operators and reduction of
 !> the divided mesh are its own; nothing that the run reads is written.
 module divided_mesh
-   use companion_states, only: implicit_state, implicit_step
+   use companion_states, only: implicit_state
    use connections, only: connections_type
    use contact_system, only: contact_open
-   use controls, only: default_solver, method_anderson
+   use controls, only: default_solver, method_anderson, start_type
    use equations, only: equation_nodes
    use errors, only: error_type
    use field_recovery, only: error_record_type
    use heat_equation, only: heat_across
-   use heat_reduction, only: heat_reduction_type
-   use increments, only: accept_increment, advance
-   use interface_quantities, only: contacts_of_state
+   use increment_records, only: contacts_of_state
+   use increments, only: advance
    use kinds, only: dp
    use load_histories, only: end_of_step
    use local_refinement, only: choose_neighbours, elements_about, elements_at_surfaces, &
       largest_part
-   use mesh_division, only: divide, division_type, refined_members
+   use mesh_division, only: divide, division_type
    use model, only: model_type, uncertainty_no
    use records, only: field_record_type, increment_record_type
    use reduced_bodies, only: reduced_bodies_type
@@ -28,7 +27,7 @@ module divided_mesh
    use restarts, only: bring_to, exchange_run
    use solution_state, only: solution_state_type
    use state_tables, only: state_table_type
-   use steps, only: boundary_type, solves_mechanics, step_type
+   use steps, only: boundary_type, dof_temperature, solves_mechanics, step_type
    use simulation, only: make_initial_state, simulation_type
    implicit none
    private
@@ -47,7 +46,6 @@ module divided_mesh
       !> Freed by release. Held by value, its copying, which nothing calls, would be most of the
       !> code of this module and of those that hold a divided mesh
       type(simulation_type), pointer :: run => null()
-      type(heat_reduction_type), private :: heat        !! where the films at the end are others
    contains
       procedure :: solve_end
       procedure :: begin
@@ -88,14 +86,14 @@ contains
          guess%sources%film = run%loads%film_matrix()
          guess%force_load = run%loads%nodal_forces()
          do
-            step = implicit_step(self%model%steps(number))
+            step = self%model%steps(number)
+            step%start = start_type()
             if (run%heat_reductions(1)%forms_on_demand) step%fixed_point%method = method_anderson
             next = guess
-            call implicit_state(run, self%heat, self%model, step, before, next, error)
+            call implicit_state(run, self%model, step, before, next, error)
             if (.not. (allocated(error) .and. run%heat_reductions(1)%forms_on_demand .and. &
                run%bodies%is_coupled)) exit
             run%heat_reductions(1)%forms_on_demand = .false.
-            self%heat%forms_on_demand = .false.
             call run%reduce(self%model, error)
             if (allocated(error)) exit
          end do
@@ -120,8 +118,7 @@ contains
 
       call divide_elements(self, model, spread(.true., 1, size(model%mesh%element_kind)))
       self%model%uncertainty = uncertainty_no
-      deallocate (self%model%verifications)
-      allocate (self%model%verifications(0))
+      self%model%verifications = self%model%verifications(:0)
       do s = 1, size(self%model%steps)
          associate (step => self%model%steps(s))
             step%first_increment = 0.5_dp*step%first_increment
@@ -183,11 +180,9 @@ contains
    subroutine release(self)
       class(divided_mesh_type), intent(inout) :: self
 
-      if (associated(self%run)) then
-         call self%run%release()
-         deallocate (self%run)
-      end if
-      call self%heat%release()
+      if (.not. associated(self%run)) return
+      call self%run%release()
+      deallocate (self%run)
    end subroutine release
 
    !> Stress of a state, and its inelastic strains, where mechanics is solved.
@@ -212,7 +207,6 @@ contains
       type(model_type), intent(in) :: model
       logical, intent(in) :: also(:)                      ! (elements)
       type(error_type), allocatable, intent(out) :: error
-      type(heat_reduction_type) :: fresh_heat
       logical :: chosen(size(model%mesh%element_number))
       integer, allocatable :: counted(:)
       integer :: k
@@ -226,23 +220,20 @@ contains
          if (size(counted) > 0) chosen = chosen .and. elements_about(model%mesh, &
             [(points%nodes_of(counted(k)), k=1, size(counted))])
       end associate
-      if (size(model%ties) > 0) chosen = chosen .or. elements_at_surfaces(model%mesh, &
+      chosen = chosen .or. also .or. elements_at_surfaces(model%mesh, &
          [model%ties%faces%slave, model%ties%faces%master])
-      chosen = chosen .or. also
       call choose_neighbours(model, chosen)
       if (associated(self%run)) then
          if (all((self%division%rank > 0) .eqv. chosen)) return
       end if
       call self%release()
       call divide_elements(self, model, chosen)
-      self%heat = fresh_heat
       call self%run%bodies%prepare(self%model, error)
       if (allocated(error)) then
          call self%release()
          return
       end if
       self%run%heat_reductions(1)%forms_on_demand = .not. allocated(self%run%bodies%points%heated)
-      self%heat%forms_on_demand = self%run%heat_reductions(1)%forms_on_demand
       call self%run%loads%prepare(self%model)
       self%run%state = make_initial_state(self%model, self%run%bodies)
    end subroutine divide_at_contact
@@ -268,32 +259,28 @@ contains
    subroutine hold_new_nodes(division, model)
       type(division_type), intent(in) :: division
       type(model_type), intent(inout) :: model            ! the divided one
+      integer, parameter :: dofs(3) = [1, 2, dof_temperature]
       type(boundary_type), allocatable :: given(:)
       type(boundary_type) :: support
-      real(dp) :: value(division%nodes_after), values(division%nodes)
-      logical :: is_held(division%nodes_after), is_member(division%nodes)
-      logical, allocatable :: is_like(:), waits(:)
-      integer :: node, s
+      integer, allocatable :: around(:)                   ! those of the nodes that a new one is of
+      integer :: at(size(model%mesh%node_number)), d, first, i, last, node, s
 
       do s = 1, size(model%steps)
          given = model%steps(s)%boundaries
-         values = 0.0_dp
-         waits = given%node <= division%nodes
-         do while (any(waits))
-            support = given(findloc(waits, .true., dim=1))
-            is_like = waits .and. given%dof == support%dof .and. given%amplitude == &
-               support%amplitude
-            waits = waits .and. .not. is_like
-            is_member = .false.
-            is_member(pack(given%node, is_like)) = .true.
-            values(pack(given%node, is_like)) = pack(given%value, is_like)
-            is_held = refined_members(division, is_member)
-            value = division%weights%multiply(merge(values, 0.0_dp, is_member))
+         do d = 1, size(dofs)
+            at = 0
+            do i = 1, size(given)
+               if (given(i)%dof == dofs(d)) at(given(i)%node) = i
+            end do
             do node = division%nodes + 1, division%nodes_after
-               if (.not. is_held(node) .or. any(given%node == node .and. given%dof == &
-                  support%dof)) cycle
+               first = division%weights%row_start(node)
+               last = division%weights%row_start(node + 1) - 1
+               around = at(division%weights%column(first:last))
+               if (at(node) > 0 .or. any(around == 0)) cycle
+               support = given(around(1))
+               if (any(given(around)%amplitude /= support%amplitude)) cycle
                support%node = node
-               support%value = value(node)
+               support%value = dot_product(division%weights%value(first:last), given(around)%value)
                model%steps(s)%boundaries = [model%steps(s)%boundaries, support]
             end do
          end do
@@ -361,16 +348,14 @@ contains
    subroutine enter_step(self, step)
       type(divided_mesh_type), intent(inout) :: self
       integer, intent(in) :: step
-      type(solution_state_type) :: ending                 ! of the step before, as far as loads tell
 
       associate (run => self%run)
          do while (run%control%step < step)
             if (run%control%step > 0) call run%loads%move_to(end_of_step(self%model%steps, &
                run%control%step), self%model)
-            ending = run%state
-            ending%displacement = run%loads%displacement%value
-            ending%temperature = run%loads%temperature%value
-            call accept_increment(ending, self%model, run%state)
+            ! The end of the step before, as far as loads tell.
+            run%state%displacement = run%loads%displacement%value
+            run%state%temperature = run%loads%temperature%value
             call run%enter_step(self%model)
          end do
       end associate
@@ -394,17 +379,16 @@ contains
       if (.not. state%has_mechanics) return
       divided%has_mechanics = .true.
       divided%increment_size = state%increment_size
-      associate (fine => self%run%bodies%points, contact => divided%contact)
+      associate (fine => self%run%bodies%points, contact => divided%contact, &
+         x => self%model%mesh%coordinates)
          ! The nearest contact point of the run.
          do i = 1, size(fine%interface_start) - 1
             first = points%interface_start(i)
             last = points%interface_start(i + 1) - 1
-            associate (x => self%model%mesh%coordinates)
-               do k = fine%interface_start(i), fine%interface_start(i + 1) - 1
-                  nearest(k) = first - 1 + minloc(norm2(x(:, points%slave(first:last)) - &
-                     spread(x(:, fine%slave(k)), 2, last - first + 1), dim=1), dim=1)
-               end do
-            end associate
+            do k = fine%interface_start(i), fine%interface_start(i + 1) - 1
+               nearest(k) = first - 1 + minloc(norm2(x(:, points%slave(first:last)) - &
+                  spread(x(:, fine%slave(k)), 2, last - first + 1), dim=1), dim=1)
+            end do
          end do
          contact%contact_state = state%contact%contact_state(nearest)
          contact%direction = state%contact%direction(nearest)

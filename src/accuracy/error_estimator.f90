@@ -6,16 +6,15 @@ module error_estimator
    use body_maxima, only: body_maxima_type
    use checked_values, only: is_estimable, values_asked_for, worst_of
    use companion_states, only: find_other_states
+   use contact_extents, only: peaks_at_axis, peaks_at_corner, spacing_at
    use contact_points, only: contact_points_type
-   use contact_quantities, only: estimated
+   use contact_quantities, only: estimated, estimated_values
    use divided_mesh, only: divided_mesh_type
    use due_output, only: is_followed, is_judged
-   use element_kinds, only: element_corner_count
    use errors, only: error_type
    use field_quantities, only: maxima
-   use field_recovery, only: error_record_type
+   use field_recovery, only: squared_errors
    use increment_quantities, only: history_estimated, history_value
-   use interface_quantities, only: peaks_at_axis, peaks_at_corner, quantities_of, spacing_at
    use kinds, only: dp
    use local_refinement, only: elements_about, largest_part
    use mesh, only: mesh_type
@@ -28,13 +27,13 @@ module error_estimator
    use reported_quantities, only: verifiable
    use simulation, only: simulation_type
    use solution_state, only: solution_state_type
-   use state_tables, only: integers, state_table_type
+   use state_tables, only: state_table_type
    use table_uncertainties, only: find_table_uncertainties
    use text, only: append, read_integer, to_text, to_upper
    use uncertainty_rule, only: uncertainty_parts
    implicit none
    private
-   public :: error_estimator_type, squared_errors
+   public :: error_estimator_type
 
    !> Part of the squared recovered error of stress and of flux, in every body, that the elements
    !> have which are divided.
@@ -42,8 +41,7 @@ module error_estimator
 
    !> Relative difference of quantities that the fixed point leaves
    real(dp), parameter :: same = 1.0e-5_dp
-   !> Relative error of a body below which its fields are smooth but for rounding.
-   real(dp), parameter :: rounding = 1.0e-8_dp
+   real(dp), parameter :: nothing(2) = 0.0_dp   !! scatter and spacing of what has neither
 
    !> Data of the estimates.
    type :: error_estimator_type
@@ -51,7 +49,8 @@ module error_estimator
       type(divided_mesh_type) :: divided           !! the model with divided elements
       type(solution_state_type) :: before          !! state before the present increment
       type(quantity_histories_type) :: histories   !! quantities at the increments before
-      integer :: step = 0                          !! step of the present increment
+      !> Contact points of the interfaces of the run, and of those of the divided mesh
+      type(contact_points_type), allocatable :: interfaces(:), finer(:)
       real(dp) :: iteration = 0.0_dp               !! what its fixed point has left, relative
       logical :: is_on = .false.                   !! whether there is anything to estimate
       logical :: is_full = .false.                 !! whether the divided mesh follows the run
@@ -93,33 +92,21 @@ contains
       type(model_type), intent(in) :: model
       type(simulation_type), intent(in) :: simulation        !! the run at its end
       type(increment_record_type), intent(inout) :: record
-      real(dp) :: values(size(estimated), size(record%contacts))
       type(body_maxima_type) :: found
       integer :: i
 
-      do i = 1, size(record%contacts)
-         values(:, i) = quantities_of(record%contacts(i))
-      end do
-      if (.not. self%is_on) then
-         if (.not. record%last_of_step) return
-         allocate (record%uncertainties(size(record%contacts)), record%body_uncertainties(0))
-         do i = 1, size(record%contacts)
-            call clear(record%uncertainties(i), values(:, i))
-            where (.not. ieee_is_nan(values(:, i))) record%uncertainties(i)%no_estimate = &
-               reason_of_run(model)
-         end do
-         return
-      end if
-      if (record%step /= self%step) then
-         self%step = record%step
-         call self%histories%begin_step(size(estimated), size(record%contacts))
-      end if
-      call self%histories%follow(record%time, values)
-      if (.not. (self%is_full .or. record%last_of_step)) return
+      associate (values => reshape([(estimated_values(record%contacts(i)), &
+         i=1, size(record%contacts))], [size(estimated), size(record%contacts)]))
+         if (self%is_on) call self%histories%follow(record%step, record%time, values)
+         if (.not. (self%is_full .or. record%last_of_step)) return
+         record%uncertainties = no_uncertainty(values, reason_of_run(model))
+      end associate
+      allocate (record%body_uncertainties(merge(model%mesh%body_count, 0, self%is_on)))
+      if (.not. self%is_on) return
       call found%find(model, simulation, record)
       call solve_finer(self, model, simulation, record, found)
       self%iteration = left_by_iteration(record)
-      call judge_interfaces(self, model, simulation, values, record)
+      call judge_interfaces(self, model, simulation, record)
       call judge_bodies(self, model, simulation, found, record)
       call judge_checks(self, model, simulation, found, record)
       if (self%is_full) call judge_history(self, record)
@@ -136,20 +123,20 @@ contains
       type(body_maxima_type), intent(in) :: found
       logical :: near(size(model%mesh%element_kind))
       type(error_type), allocatable :: error
-      logical :: was_lost
 
-      was_lost = allocated(self%lost)
       if (self%is_full) then
-         if (.not. was_lost) call self%divided%follow(simulation, record, error)
+         if (.not. allocated(self%lost)) call self%divided%follow(simulation, record, error)
       else
          near = elements_about(model%mesh, nodes_looked_at(model, record, found))
+         if (allocated(self%lost)) deallocate (self%lost)
          call self%divided%solve_end(simulation, model, near .or. err_most(model%mesh, record), &
             near, self%before, error)
-         if (.not. allocated(error) .and. was_lost) deallocate (self%lost)
       end if
       if (allocated(error)) self%lost = error%message
       if (allocated(self%lost) .and. (allocated(error) .or. record%increment == 1)) call append( &
          record%notes, 'numerical uncertainties cannot be estimated: '//self%lost)
+      call simulation%bodies%views(self%interfaces)
+      if (.not. allocated(self%lost)) call self%divided%run%bodies%views(self%finer)
    end subroutine solve_finer
 
    !> Nodes at which the last increment alone tells maxima and checks.
@@ -161,7 +148,7 @@ contains
       integer :: i, number
       logical :: is_number
 
-      nodes = pack(found%node, found%node > 0)
+      nodes = [found%node]
       do i = 1, size(model%verifications)
          associate (check => model%verifications(i))
             if (verifiable(find_quantity(verifiable, check%quantity))%kind /= of_nodes .or. &
@@ -178,68 +165,57 @@ contains
       type(mesh_type), intent(in) :: mesh
       type(increment_record_type), intent(in) :: record
       logical :: chosen(size(mesh%element_kind))
-      real(dp) :: error(size(chosen), 2)
-      integer :: b, k
+      real(dp), dimension(size(chosen)) :: of_flux, of_stress
+      integer :: b
 
-      error(:, 1) = errors_of(mesh, record%stress_error)
-      error(:, 2) = errors_of(mesh, record%heat_flux_error)
+      of_flux = squared_errors(mesh, record%heat_flux_error)
+      of_stress = squared_errors(mesh, record%stress_error)
       chosen = .false.
-      do k = 1, 2
-         do b = 1, mesh%body_count
-            chosen = chosen .or. largest_part(merge(error(:, k), 0.0_dp, mesh%element_body == b), &
-               divided_part)
-         end do
+      do b = 1, mesh%body_count
+         associate (is_own => mesh%element_body == b)
+            chosen = chosen .or. largest_part(merge(of_flux, 0.0_dp, is_own), divided_part) .or. &
+               largest_part(merge(of_stress, 0.0_dp, is_own), divided_part)
+         end associate
       end do
    end function err_most
 
    !> Uncertainties of the quantities of interfaces.
-   subroutine judge_interfaces(self, model, simulation, values, record)
+   subroutine judge_interfaces(self, model, simulation, record)
       type(error_estimator_type), intent(inout) :: self
       type(model_type), intent(in) :: model
       type(simulation_type), intent(in) :: simulation
-      real(dp), intent(in) :: values(:, :)                   ! (quantities, interfaces)
-      type(increment_record_type), intent(inout) :: record
-      real(dp) :: other(size(values, 1), size(values, 2)), fine(size(values, 1)), &
-         change(size(values, 1)), largest(size(values, 1)), scatter(size(values, 1))
-      type(contact_points_type) :: points
-      type(contact_points_type), allocatable :: finer(:)
+      type(increment_record_type), intent(inout) :: record   ! with their values
+      real(dp), dimension(size(estimated), size(record%contacts)) :: other, values
+      real(dp), dimension(size(estimated)) :: change, scatter
       logical :: holds(reason_count), is_at_corner
-      integer :: i, q, start(size(values, 2) + 1)
+      integer :: i, q, start(size(record%contacts) + 1)
 
-      allocate (record%uncertainties(size(record%contacts)))
       start = simulation%bodies%points%interface_start
+      values = record%uncertainties%value
       other = values
       if (record%last_of_step .and. .not. model%steps(record%step)%is_transient) call &
          find_other_states(simulation, model, record%step, self%before, other)
-      fine = ieee_value(1.0_dp, ieee_quiet_nan)
-      if (.not. allocated(self%lost)) call self%divided%run%bodies%views(finer)
       do i = 1, size(record%contacts)
-         call clear(record%uncertainties(i), values(:, i))
-         call simulation%bodies%view(i, points)
-         scatter = self%histories%scatter(i)
-         is_at_corner = peaks_at_corner(points, record%contacts(i))
+         is_at_corner = peaks_at_corner(self%interfaces(i), record%contacts(i))
+         change = ieee_value(1.0_dp, ieee_quiet_nan)
          if (.not. allocated(self%lost)) then
-            fine = quantities_of(self%divided%record%contacts(i))
-            is_at_corner = is_at_corner .or. peaks_at_corner(finer(i), &
+            change = estimated_values(self%divided%record%contacts(i)) - values(:, i)
+            is_at_corner = is_at_corner .or. peaks_at_corner(self%finer(i), &
                self%divided%record%contacts(i))
          end if
-         change = fine - values(:, i)
-         if (self%is_full) call self%histories%take_change(i, change, largest)
-         ! In steps of few increments changes alone tell how they scatter.
-         if (self%is_full) change = merge(largest, change, ieee_is_nan(scatter))
-         where (ieee_is_nan(scatter)) scatter = 0.0_dp
-         do q = 1, size(values, 1)
+         call self%histories%take_change(i, change, scatter)
+         do q = 1, size(estimated)
             holds = .false.
             holds(slides_far) = record%contacts(i)%slide%point > 0
             if (.not. ieee_is_nan(other(q, i) - values(q, i))) holds(not_unique) = &
                abs(other(q, i) - values(q, i)) > same*abs(values(q, i))
             holds(at_corner) = estimated(q)%name == 'peak_pressure' .and. is_at_corner
             holds(of_axis) = estimated(q)%name == 'peak_pressure' .and. &
-               peaks_at_axis(points, record%contacts(i))
+               peaks_at_axis(self%interfaces(i), record%contacts(i))
             holds(of_path) = estimated(q)%follows_path .and. .not. self%is_full .and. any( &
                simulation%bodies%laws%friction(start(i):start(i + 1) - 1)%coefficient > 0.0_dp)
-            call settle(self, record%uncertainties(i), q, estimated(q), change(q), holds, &
-               [scatter(q), spacing_at(estimated(q), points, values(q, i))])
+            record%uncertainties(q, i) = judged(self, estimated(q), values(q, i), change(q), &
+               holds, [scatter(q), spacing_at(estimated(q), self%interfaces(i), values(q, i))])
             if (holds(not_unique)) call append(record%notes, trim(estimated(q)%name)//' of '// &
                model%contacts(i)%name//' is '//to_text(values(q, i))//' or '//to_text( &
                other(q, i))//': the conductance jumps as the gap closes, two contact states '// &
@@ -255,31 +231,24 @@ contains
       type(simulation_type), intent(in) :: simulation
       type(body_maxima_type), intent(in) :: found
       type(increment_record_type), intent(inout) :: record
-      logical :: is_larger(size(found%is_singular)), holds(reason_count)
-      real(dp) :: change(size(maxima), model%mesh%body_count), value(size(maxima))
-      integer :: b, k, q
+      logical :: holds(reason_count)
+      real(dp) :: change(size(maxima), model%mesh%body_count)
+      integer :: b, q
 
-      allocate (record%body_uncertainties(model%mesh%body_count))
       change = ieee_value(1.0_dp, ieee_quiet_nan)
       if (.not. allocated(self%lost)) change = found%changes(self%divided, model%mesh, &
-         simulation%recovery%points, record%fields)
-      is_larger = found%larger_corners(model%mesh, simulation%recovery%points, record%fields)
+         simulation, record%fields)
       holds = .false.
       holds(slides_far) = any(record%contacts%slide%point > 0)
       do b = 1, model%mesh%body_count
          associate (own => record%body_uncertainties(b))
-            value = merge(found%value(:, b), ieee_value(1.0_dp, ieee_quiet_nan), &
-               found%node(:, b) > 0)
-            call clear(own, value)
             own%node = found%node(:, b)
-            own%corners = pack([(k, k=1, size(is_larger))], is_larger .and. &
-               model%mesh%node_body == b)
+            own%corners = pack(found%corners, model%mesh%node_body(found%corners) == b)
+            allocate (own%maxima(size(maxima)))
             do q = 1, size(maxima)
-               if (own%node(q) == 0) cycle
                holds(of_path) = .not. self%is_full .and. ieee_is_nan(change(q, b))
-               if (maxima(q)%name == 'temperature' .and. simulation%loads%temperature%active( &
-                  own%node(q))) change(q, b) = 0.0_dp
-               call settle(self, own, q, maxima(q), change(q, b), holds)
+               own%maxima(q) = judged(self, maxima(q), found%value(q, b), change(q, b), holds, &
+                  nothing)
             end do
          end associate
       end do
@@ -293,100 +262,65 @@ contains
       type(simulation_type), intent(in) :: simulation
       type(body_maxima_type), intent(in) :: found
       type(increment_record_type), intent(inout) :: record
-      !> What checks call the maxima.
-      character(*), parameter :: names(*) = [character(5) :: 'MISES', 'NT', 'PEEQ', 'CEEQ']
-      type(contact_points_type), allocatable :: interfaces(:), fine_interfaces(:)
-      type(uncertainty_type) :: checks
       integer :: i
 
-      call clear(checks, spread(ieee_value(1.0_dp, ieee_quiet_nan), 1, size(model%verifications)))
-      if (size(model%verifications) > 0) then
-         call simulation%bodies%views(interfaces)
-         if (.not. allocated(self%lost)) call self%divided%run%bodies%views(fine_interfaces)
-      end if
+      allocate (record%check_uncertainties(size(model%verifications)), source=no_uncertainty( &
+         ieee_value(1.0_dp, ieee_quiet_nan), no_reason))
       do i = 1, size(model%verifications)
          associate (check => model%verifications(i))
-            if (.not. (is_estimable(check) .and. (is_judged(check, record, model) .or. &
-               is_followed(check, record, model)))) cycle
-            if (.not. is_copied(check)) call compare(check)
+            if (is_estimable(check) .and. (is_judged(check, record, model) .or. &
+               is_followed(check, record, model))) call judge(check, record%check_uncertainties(i))
          end associate
       end do
-      record%check_uncertainties = checks
 
    contains
 
-      !> Whether a check has the uncertainty of a quantity of an interface, of the largest pressure
-      !> of the only one, or of a maximum of a body, which it takes.
-      logical function is_copied(check)
+      !> Gives a check the uncertainty of a quantity of an interface, of the largest pressure of the
+      !> only one, or of a maximum of a body, where it is about one of these; else compares what
+      !> both meshes have.
+      subroutine judge(check, own)
          type(verify_type), intent(in) :: check
-         character(:), allocatable :: quantity, reason, where
-         real(dp), allocatable :: values(:)
-         integer :: k, q
+         type(uncertainty_type), intent(inout) :: own
+         type(quantity_type) :: quantity
+         character(:), allocatable :: reason, where
+         real(dp), allocatable :: fine(:), values(:)
+         logical :: holds(reason_count), is_node
+         integer :: k, number, q
 
-         quantity = to_upper(check%quantity)
          where = to_upper(check%where)
-         is_copied = .true.
-         q = find_quantity(estimated, quantity)
-         if (quantity == 'PRESSURE' .and. where == 'MAX' .and. size(interfaces) == 1) q = &
-            find_quantity(estimated, 'peak_pressure')
-         do k = 1, merge(size(interfaces), 0, q > 0)
-            if (to_upper(interfaces(k)%name) /= where .and. size(interfaces) > 1) cycle
-            call copy(record%uncertainties(k), q)
+         q = find_quantity(estimated, check%quantity)
+         if (to_upper(check%quantity) == 'PRESSURE' .and. where == 'MAX' .and. &
+            size(self%interfaces) == 1) q = find_quantity(estimated, 'peak_pressure')
+         do k = 1, merge(size(self%interfaces), 0, q > 0)
+            if (to_upper(self%interfaces(k)%name) /= where .and. size(self%interfaces) > 1) cycle
+            own = record%uncertainties(q, k)
             return
          end do
-         q = findloc(names == quantity, .true., dim=1)
-         is_copied = q > 0 .and. where == 'MAX'
-         if (.not. is_copied) return
-         k = maxloc(found%value(q, :), dim=1)
-         is_copied = found%node(q, k) > 0
-         if (.not. is_copied) return
-         call values_asked_for(check, record, model, interfaces, &
+         call values_asked_for(check, record, model, self%interfaces, &
             simulation%recovery%points%node, values, reason)
-         if (maxval(values) > found%value(q, k)) then
-            checks%value(i) = maxval(values)
-            checks%no_estimate(i) = at_corner
-         else
-            call copy(record%body_uncertainties(k), q)
+         if (reason /= '') return
+         q = findloc(maxima%head == to_upper(check%quantity), .true., dim=1)
+         k = 0
+         if (q > 0 .and. where == 'MAX') k = maxloc(found%value(q, :), dim=1, &
+            mask=found%node(q, :) > 0)
+         if (k > 0) then
+            own = record%body_uncertainties(k)%maxima(q)
+            if (maxval(values) > own%value) own = no_uncertainty(maxval(values), at_corner)
+            return
          end if
-      end function is_copied
-
-      subroutine copy(own, q)
-         class(uncertainty_type), intent(in) :: own
-         integer, intent(in) :: q
-
-         checks%value(i) = own%value(q)
-         checks%total(i) = own%total(q)
-         checks%change(i) = own%change(q)
-         checks%scatter(i) = own%scatter(q)
-         checks%iteration(i) = own%iteration(q)
-         checks%no_estimate(i) = own%no_estimate(q)
-      end subroutine copy
-
-      !> Compares what both meshes have.
-      subroutine compare(check)
-         type(verify_type), intent(in) :: check
-         type(quantity_type) :: quantity
-         character(:), allocatable :: reason
-         real(dp), allocatable :: values(:), fine(:)
-         logical :: holds(reason_count), is_node
-         integer :: number
-
          quantity = verifiable(find_quantity(verifiable, check%quantity))
          call read_integer(check%where, number, is_node)
          holds = .false.
          if (is_node .and. any(quantity%unit == ['stress', '-     '])) holds(at_corner) = &
             any(found%is_singular .and. model%mesh%node_number == number)
          holds(of_step) = .not. (self%is_full .or. quantity%kind == of_nodes .and. is_node)
-         call values_asked_for(check, record, model, interfaces, simulation%recovery%points%node, &
-            values, reason)
-         if (reason /= '') return
-         checks%value(i) = worst_of(check, values)
          if (.not. (allocated(self%lost) .or. any(holds))) call values_asked_for(check, &
-            self%divided%record, self%divided%model, fine_interfaces, &
+            self%divided%record, self%divided%model, self%finer, &
             self%divided%run%recovery%points%node, fine, reason)
          if (reason /= '' .or. .not. allocated(fine)) fine = [ieee_value(1.0_dp, ieee_quiet_nan)]
-         call settle(self, checks, i, quantity, worst_of(check, fine) - checks%value(i), holds)
-      end subroutine compare
+         own = judged(self, quantity, worst_of(check, values), worst_of(check, fine) - &
+            worst_of(check, values), holds, nothing)
+      end subroutine judge
 
    end subroutine judge_checks
 
@@ -394,81 +328,66 @@ contains
    subroutine judge_history(self, record)
       type(error_estimator_type), intent(in) :: self
       type(increment_record_type), intent(inout) :: record
-      type(uncertainty_type) :: own
-      logical :: holds(reason_count)
-      real(dp) :: change
+      real(dp), dimension(size(history_estimated)) :: finer, values
       integer :: q
 
-      holds = .false.
-      call clear(own, [(history_value(history_estimated(q)%name, record), &
-         q=1, size(history_estimated))])
-      do q = 1, size(own%value)
-         change = ieee_value(1.0_dp, ieee_quiet_nan)
-         if (.not. allocated(self%lost)) change = history_value(history_estimated(q)%name, &
-            self%divided%record) - own%value(q)
-         call settle(self, own, q, history_estimated(q), change, holds)
-      end do
-      record%history_uncertainties = own
+      values = [(history_value(history_estimated(q)%name, record), q=1, size(values))]
+      finer = ieee_value(1.0_dp, ieee_quiet_nan)
+      if (.not. allocated(self%lost)) finer = [(history_value(history_estimated(q)%name, &
+         self%divided%record), q=1, size(finer))]
+      record%history_uncertainties = [(judged(self, history_estimated(q), values(q), &
+         finer(q) - values(q), spread(.false., 1, reason_count), nothing), q=1, size(values))]
    end subroutine judge_history
 
-   !> Begins with values alone.
-   pure subroutine clear(own, values)
-      class(uncertainty_type), intent(inout) :: own
-      real(dp), intent(in) :: values(:)
+   !> A value without an uncertainty, and why.
+   elemental function no_uncertainty(value, reason) result(own)
+      real(dp), intent(in) :: value
+      integer, intent(in) :: reason              ! of a value that is there
+      type(uncertainty_type) :: own
 
-      own%value = values
-      own%total = spread(ieee_value(1.0_dp, ieee_quiet_nan), 1, size(values))
-      own%change = own%total
-      own%scatter = own%total
-      own%iteration = own%total
-      allocate (own%no_estimate(size(values)), source=no_reason)
-      allocate (own%at_end(size(values)), source=0.0_dp)
-   end subroutine clear
+      associate (none => ieee_value(1.0_dp, ieee_quiet_nan))
+         own = uncertainty_type(value, none, none, none, none, merge(no_reason, reason, &
+            ieee_is_nan(value)))
+      end associate
+   end function no_uncertainty
 
-   !> Gives a value its uncertainty, or the reason why it has none; one that is not there has none.
-   pure subroutine settle(self, own, q, quantity, change, holds, beside)
+   !> The uncertainty of a value, or the reason why it has none; one that is not there has none.
+   pure function judged(self, quantity, value, change, holds, beside) result(own)
       type(error_estimator_type), intent(in) :: self
-      class(uncertainty_type), intent(inout) :: own   ! with the value
-      integer, intent(in) :: q
       type(quantity_type), intent(in) :: quantity
+      real(dp), intent(in) :: value
       real(dp), intent(in) :: change                  ! on the finer mesh, or NaN
       logical, intent(in) :: holds(reason_count)      ! what is known of the value
-      real(dp), intent(in), optional :: beside(2)     ! scatter and spacing; absent: 0
+      real(dp), intent(in) :: beside(2)               ! scatter and spacing
+      type(uncertainty_type) :: own
       logical :: all_holds(reason_count)
-      real(dp) :: parts(3), others(2)
+      real(dp) :: parts(3)
 
-      if (ieee_is_nan(own%value(q))) return
       all_holds = holds
       all_holds(not_on_finer_mesh) = allocated(self%lost)
       all_holds(no_finer_value) = ieee_is_nan(change)
-      own%no_estimate(q) = first_reason(all_holds)
-      others = 0.0_dp
-      if (present(beside)) others = beside
-      parts = uncertainty_parts(quantity, change, others(1), others(2), &
-         self%iteration*own%value(q))
-      if (any(own%no_estimate(q) == [of_axis, of_path]) .and. .not. ieee_is_nan(sum(parts))) then
-         own%at_end(q) = sum(parts)
+      own = no_uncertainty(value, first_reason(all_holds))
+      if (ieee_is_nan(value)) return
+      parts = uncertainty_parts(quantity, change, beside(1), beside(2), self%iteration*value)
+      if (any(own%no_estimate == [of_axis, of_path]) .and. .not. ieee_is_nan(sum(parts))) then
+         own%at_end = sum(parts)
       end if
-      if (own%no_estimate(q) /= no_reason) return
-      own%change(q) = parts(1)
-      own%scatter(q) = parts(2)
-      own%iteration(q) = parts(3)
-      own%total(q) = sum(parts)
-   end subroutine settle
+      if (own%no_estimate == no_reason) own = uncertainty_type(value, sum(parts), parts(1), &
+         parts(2), parts(3), no_reason)
+   end function judged
 
    !> What the fixed point has left, relative: its residual, through the gain that is nearest to 1.
    !> omega - U(omega) = r moves the solution by (1 - U')^-1 r.
    pure real(dp) function left_by_iteration(record) result(relative)
       type(increment_record_type), intent(in) :: record
-      real(dp) :: distance
 
       relative = 0.0_dp
       if (.not. allocated(record%iterations)) return
       if (size(record%iterations) == 0 .or. ieee_is_nan(record%coupling_gain)) return
-      distance = min(1.0_dp, abs(1.0_dp - record%coupling_gain))
-      if (.not. ieee_is_nan(record%coupling_gain_max)) distance = min(distance, &
-         abs(1.0_dp - record%coupling_gain_max))
-      relative = history_value('residual', record)/max(tiny(1.0_dp), distance)
+      associate (gains => [0.0_dp, record%coupling_gain, record%coupling_gain_max])
+         relative = history_value('residual', record)/max(tiny(1.0_dp), &
+            minval(abs(1.0_dp - gains), mask=.not. ieee_is_nan(gains)))
+      end associate
    end function left_by_iteration
 
    !> All that the estimates take of earlier increments, in either direction.
@@ -478,15 +397,9 @@ contains
       integer, intent(in) :: interfaces                   !! number of them
       type(state_table_type), intent(inout) :: table
       type(error_type), allocatable, intent(out) :: error
-      integer, allocatable :: step(:)
 
       if (.not. self%is_on) return
-      ! One that has followed no increment yet receives the table.
-      if (self%step == 0) call self%histories%begin_step(size(estimated), interfaces)
-      step = [self%step]
-      call integers(table, 'estimated_step', step)
-      self%step = step(1)
-      call self%histories%exchange(table)
+      call self%histories%exchange([size(estimated), interfaces], table)
       if (self%is_full .and. .not. allocated(self%lost)) call self%divided%exchange(table, error)
    end subroutine exchange
 
@@ -496,52 +409,5 @@ contains
 
       call self%divided%release()
    end subroutine release
-
-   !> Squared error of each element: stress and heat flux of each body count by their relative
-   !> errors.
-   pure function squared_errors(mesh, record) result(error)
-      type(mesh_type), intent(in) :: mesh
-      type(increment_record_type), intent(in) :: record  !! with the fields of its end
-      real(dp) :: error(size(mesh%element_kind))
-
-      error = errors_of(mesh, record%stress_error) + errors_of(mesh, record%heat_flux_error)
-   end function squared_errors
-
-   !> The part that each element has in the squared relative error of its body.
-   pure function errors_of(mesh, estimate) result(error)
-      type(mesh_type), intent(in) :: mesh
-      type(error_record_type), intent(in) :: estimate
-      real(dp) :: error(size(mesh%element_kind))
-      real(dp) :: sums(mesh%body_count)
-      integer :: e
-
-      error = 0.0_dp
-      if (.not. allocated(estimate%element)) return
-      sums = 0.0_dp
-      do e = 1, size(error)
-         error(e) = estimate%element(e)**2*area_of(mesh, e)
-         sums(mesh%element_body(e)) = sums(mesh%element_body(e)) + error(e)
-      end do
-      do e = 1, size(error)
-         associate (b => mesh%element_body(e))
-            if (sums(b) > 0.0_dp .and. estimate%body(b) > rounding) then
-               error(e) = estimate%body(b)**2*error(e)/sums(b)
-            else
-               error(e) = 0.0_dp
-            end if
-         end associate
-      end do
-   end function errors_of
-
-   !> Area of an element between its corners.
-   pure real(dp) function area_of(mesh, e) result(area)
-      type(mesh_type), intent(in) :: mesh
-      integer, intent(in) :: e
-
-      associate (x => mesh%coordinates(:, mesh%element_nodes(:element_corner_count( &
-         mesh%element_kind(e)), e)))
-         area = 0.5_dp*abs(sum(x(1, :)*cshift(x(2, :), 1) - cshift(x(1, :), 1)*x(2, :)))
-      end associate
-   end function area_of
 
 end module error_estimator

@@ -12,14 +12,16 @@ module table_uncertainties
    use kinds, only: dp
    use mesh, only: mesh_type
    use model, only: model_type
-   use quantity_types, only: find_quantity, quantity_type
+   use quantity_types, only: of_nodes, quantity_type
    use records, only: contact_record_type, field_record_type, increment_record_type
-   use reported_quantities, only: verifiable
    use simulation, only: simulation_type
    use uncertainty_rule, only: uncertainty_parts
    implicit none
    private
    public :: find_table_uncertainties
+
+   !> What all numbers of tables are to the rule: neither maxima nor edges.
+   type(quantity_type), parameter :: number = quantity_type('number', of_nodes, '')
 
 contains
 
@@ -31,23 +33,21 @@ contains
       real(dp), intent(in) :: iteration                        !! what it left, relative
       type(increment_record_type), intent(inout) :: record
       type(contact_points_type), allocatable :: finer(:), points(:)
-      real(dp) :: before(3), change(3)
+      real(dp) :: after(3), before(3)
       integer :: i
 
-      if (allocated(record%pre_tension)) record%pre_tension_uncertainties = total('pre_tension', &
+      if (allocated(record%pre_tension)) record%pre_tension_uncertainties = total( &
          divided%record%pre_tension - record%pre_tension, record%pre_tension, iteration)
       associate (step => model%steps(record%step), mesh => model%mesh, fine => divided%model%mesh)
          if (allocated(step%node_prints)) then
-            record%field_uncertainties = fields_of(divided, simulation, mesh, iteration, &
-               record%fields)
+            call compare_fields(record%fields, divided%record%fields)
             allocate (record%total_uncertainties(3, size(step%node_prints)))
             do i = 1, size(step%node_prints)
                before = sums_of(record%fields, step%node_prints(i)%members(mesh%node_sets, &
                   size(mesh%node_body)))
-               change = sums_of(divided%record%fields, step%node_prints(i)%members( &
-                  fine%node_sets, size(fine%node_body))) - before
-               record%total_uncertainties(:, i) = [total('RF1', change(:2), before(:2), &
-                  iteration), total('RFL', change(3:), before(3:), iteration)]
+               after = sums_of(divided%record%fields, step%node_prints(i)%members( &
+                  fine%node_sets, size(fine%node_body)))
+               record%total_uncertainties(:, i) = total(after - before, before, iteration)
             end do
          end if
          if (.not. table_is_due(step%contact_print_frequency, step%contact_print_points, record, &
@@ -60,32 +60,49 @@ contains
          record%contact_uncertainties(i) = points_of(points(i), record%contacts(i), finer(i), &
             divided%record%contacts(i), iteration)
       end do
+
+   contains
+
+      !> Those of temperatures and displacements; 0 of what is prescribed.
+      subroutine compare_fields(before, after)
+         type(field_record_type), intent(in) :: before, after
+         integer :: c
+
+         allocate (record%field_uncertainties)
+         associate (own => record%field_uncertainties, loads => simulation%loads)
+            if (allocated(before%temperature)) own%temperature = of_field(model%mesh, &
+               before%temperature, after%temperature, loads%temperature%active, iteration)
+            if (.not. allocated(before%displacement)) return
+            allocate (own%displacement, mold=before%displacement)
+            do c = 1, 2
+               own%displacement(c, :) = of_field(model%mesh, before%displacement(c, :), &
+                  after%displacement(c, :), loads%displacement%active(c::2), iteration)
+            end do
+         end associate
+      end subroutine compare_fields
+
    end subroutine find_table_uncertainties
 
-   !> Those of displacements and temperatures; 0 of what is prescribed.
-   function fields_of(divided, simulation, mesh, iteration, fields) result(own)
-      type(divided_mesh_type), intent(in) :: divided
-      type(simulation_type), intent(in) :: simulation
+   !> Those of a field: of the largest root mean square of its change over the nodes of an element
+   !> at each node, or of the change itself there.
+   pure function of_field(mesh, before, after, is_prescribed, iteration) result(own)
       type(mesh_type), intent(in) :: mesh
+      real(dp), intent(in) :: before(:), after(:)  ! (nodes), (nodes of the finer mesh, these first)
+      logical, intent(in) :: is_prescribed(:)      ! (nodes)
       real(dp), intent(in) :: iteration
-      type(field_record_type), intent(in) :: fields
-      type(field_record_type) :: own
-      integer :: c, n
+      real(dp), dimension(size(before)) :: change, largest, own
+      integer :: e
 
-      n = size(mesh%node_number)
-      associate (finer => divided%record%fields, loads => simulation%loads)
-         if (allocated(fields%temperature)) own%temperature = merge(0.0_dp, total('NT', &
-            around_nodes(mesh, finer%temperature(:n) - fields%temperature), &
-            fields%temperature, iteration), loads%temperature%active(:n))
-         if (.not. allocated(fields%displacement)) return
-         allocate (own%displacement(2, n))
-         do c = 1, 2
-            own%displacement(c, :) = merge(0.0_dp, total('U1', around_nodes(mesh, &
-               finer%displacement(c, :n) - fields%displacement(c, :)), fields%displacement(c, :), &
-               iteration), loads%displacement%active(c:2*n:2))
-         end do
-      end associate
-   end function fields_of
+      change = after(:size(before)) - before
+      largest = abs(change)
+      do e = 1, size(mesh%element_kind)
+         associate (nodes => mesh%element_nodes(:element_node_count(mesh%element_kind(e)), e))
+            largest(nodes) = max(largest(nodes), sqrt(sum(change(nodes)**2)/size(nodes)))
+         end associate
+      end do
+      own = merge(0.0_dp, total(largest, before, iteration), is_prescribed( &
+         :size(own)))
+   end function of_field
 
    !> Sums of external forces and heat over a set; NaN where the step does not have these.
    pure function sums_of(fields, nodes) result(sums)
@@ -99,76 +116,51 @@ contains
    end function sums_of
 
    !> Those of the columns of contact points; NaN at points that the finer mesh does not have.
-   function points_of(points, contact, finer, after, iteration) result(own)
+   pure function points_of(points, contact, finer, after, iteration) result(own)
       type(contact_points_type), intent(in) :: points, finer
       type(contact_record_type), intent(in) :: contact, after
       real(dp), intent(in) :: iteration
       type(contact_record_type) :: own
-      integer :: place(size(points%slave)), k
+      integer :: k, place(size(points%slave))
 
       place = [(findloc(finer%slave, points%slave(k), dim=1), k=1, size(place))]
       own%contact_state = contact%contact_state
-      own%gap = column('gap', contact%gap, after%gap)
-      own%pressure = column('pressure', contact%pressure, after%pressure)
-      own%shear = column('shear', contact%shear, after%shear)
-      own%slip = column('slip', contact%slip, after%slip)
-      if (.not. allocated(contact%conductance)) return
-      own%conductance = column('conductance', contact%conductance, after%conductance)
-      own%heat_flux = column('heat_flux', contact%heat_flux, after%heat_flux)
-      own%slave_temperature = column('slave_temperature', contact%slave_temperature, &
-         after%slave_temperature)
-      own%master_temperature = column('master_temperature', contact%master_temperature, &
-         after%master_temperature)
+      call compare(contact%gap, after%gap, own%gap)
+      call compare(contact%pressure, after%pressure, own%pressure)
+      call compare(contact%shear, after%shear, own%shear)
+      call compare(contact%slip, after%slip, own%slip)
+      call compare(contact%conductance, after%conductance, own%conductance)
+      call compare(contact%heat_flux, after%heat_flux, own%heat_flux)
+      call compare(contact%slave_temperature, after%slave_temperature, own%slave_temperature)
+      call compare(contact%master_temperature, after%master_temperature, own%master_temperature)
 
    contains
 
-      function column(name, before, fine) result(uncertainty)
-         character(*), intent(in) :: name
-         real(dp), intent(in) :: before(:), fine(:)
-         real(dp) :: uncertainty(size(before)), change(size(before))
-         integer :: first, last
+      pure subroutine compare(before, fine, uncertainty)
+         real(dp), allocatable, intent(in) :: before(:), fine(:)
+         real(dp), allocatable, intent(out) :: uncertainty(:)
+         real(dp) :: change(size(place))          ! squared
+         integer :: first, k, last
 
+         if (.not. allocated(before)) return
          change = ieee_value(1.0_dp, ieee_quiet_nan)
          where (place > 0) change = (fine(max(place, 1)) - before)**2
-         do k = 1, size(change)
+         allocate (uncertainty(size(place)))
+         do k = 1, size(place)
             first = max(1, k - 1)
-            last = min(size(change), k + 1)
+            last = min(size(place), k + 1)
             uncertainty(k) = sqrt(max(change(k), sum(change(first:last))/(last - first + 1)))
          end do
-         uncertainty = total(name, uncertainty, before, iteration)
-      end function column
+         uncertainty = total(uncertainty, before, iteration)
+      end subroutine compare
 
    end function points_of
 
-   !> At each node the largest root mean square of a change over the nodes of an element there, or
-   !> the change itself.
-   pure function around_nodes(mesh, change) result(largest)
-      type(mesh_type), intent(in) :: mesh
-      real(dp), intent(in) :: change(:)                        ! (nodes)
-      real(dp) :: largest(size(change))
-      integer :: e, n
+   !> The uncertainty of a number by the one rule.
+   elemental real(dp) function total(change, value, iteration)
+      real(dp), intent(in) :: change, value, iteration
 
-      largest = abs(change)
-      do e = 1, size(mesh%element_kind)
-         n = element_node_count(mesh%element_kind(e))
-         associate (nodes => mesh%element_nodes(:n, e))
-            largest(nodes) = max(largest(nodes), sqrt(sum(change(nodes)**2)/n))
-         end associate
-      end do
-   end function around_nodes
-
-   !> Uncertainties of numbers by the one rule.
-   pure function total(name, change, value, iteration)
-      character(*), intent(in) :: name                         ! of their quantity
-      real(dp), intent(in) :: change(:), value(:), iteration
-      real(dp) :: total(size(change))
-      type(quantity_type) :: quantity
-      integer :: k
-
-      quantity = verifiable(find_quantity(verifiable, name))
-      do k = 1, size(change)
-         total(k) = sum(uncertainty_parts(quantity, change(k), 0.0_dp, 0.0_dp, iteration*value(k)))
-      end do
+      total = sum(uncertainty_parts(number, change, 0.0_dp, 0.0_dp, iteration*value))
    end function total
 
 end module table_uncertainties

@@ -13,9 +13,9 @@ module accuracy_rounds
    use, intrinsic :: ieee_arithmetic, only: ieee_is_nan, ieee_quiet_nan, ieee_value
    use accuracy_targets, only: accuracy_request_type
    use contact_definitions, only: brings_friction
+   use contact_extents, only: contact_width, is_end_of_face, peak_is_at_end, spacing_at
    use contact_points, only: contact_points_type
    use contact_quantities, only: contact_values, end_words, estimated
-   use interface_quantities, only: contact_width, is_end_of_face, peak_is_at_end, spacing_at
    use kinds, only: dp
    use model, only: model_type
    use no_estimates, only: at_corner, grows, no_reason, of_axis, of_path, of_sliding, &
@@ -184,7 +184,7 @@ contains
                mask=self%demands%quantity == self%demands(d)%quantity))
             associate (finding => self%rounds(n)%findings(d, record%step))
                finding = found(self%demands(d), points, &
-                  record%uncertainties(self%demands(d)%interface), scale)
+                  record%uncertainties(self%demands(d)%quantity, self%demands(d)%interface), scale)
                finding%instead = '0 at the end of each step'
                if (quantity%name == 'heat_rate' .and. .not. allocated(contact%heat_flux)) then
                   finding%instead = 'no heat'
@@ -211,39 +211,39 @@ contains
 
       do d = 1, size(self%demands)
          associate (finding => self%rounds(size(self%rounds))%findings(d, record%step), &
-            errors => record%uncertainties(self%demands(d)%interface), &
+            own => record%uncertainties(self%demands(d)%quantity, self%demands(d)%interface), &
             q => self%demands(d)%quantity)
             if (.not. finding%is_there) cycle
-            errors%total(q) = finding%uncertainty
-            errors%no_estimate(q) = finding%no_estimate
-            if (ieee_is_nan(finding%uncertainty) .or. .not. ieee_is_nan(errors%change(q))) cycle
+            own%total = finding%uncertainty
+            own%no_estimate = finding%no_estimate
+            if (ieee_is_nan(finding%uncertainty) .or. .not. ieee_is_nan(own%change)) cycle
             ! The rounds tell it.
-            errors%scatter(q) = estimated(q)%resolution*finding%spacing
-            errors%change(q) = errors%total(q) - errors%scatter(q)
-            errors%iteration(q) = 0.0_dp
+            own%scatter = estimated(q)%resolution*finding%spacing
+            own%change = own%total - own%scatter
+            own%iteration = 0.0_dp
          end associate
       end do
    end subroutine settle
 
    !> The uncertainty of one quantity at the end of a step. Where an edge is the end of the
    !> interface there is nothing to judge.
-   function found(demand, points, errors, scale) result(finding)
+   function found(demand, points, own, scale) result(finding)
       type(demand_type), intent(in) :: demand
       type(contact_points_type), intent(in) :: points
-      type(uncertainty_type), intent(in) :: errors
+      type(uncertainty_type), intent(in) :: own
       real(dp), intent(in) :: scale
       type(finding_type) :: finding
 
       associate (q => demand%quantity)
-         finding%value = errors%value(q)
+         finding%value = own%value
          finding%allowed = demand%target*merge(scale, 1.0_dp, demand%is_relative)
          finding%is_there = .not. ieee_is_nan(finding%value) .and. scale > 0.0_dp
          if (.not. finding%is_there) return
          finding%is_there = .not. is_end_of_face(estimated(q), points, finding%value)
-         finding%uncertainty = errors%total(q)
-         if (allocated(errors%at_end)) finding%at_end = errors%at_end(q)
+         finding%uncertainty = own%total
+         finding%at_end = own%at_end
          finding%spacing = spacing_at(estimated(q), points, finding%value)
-         finding%no_estimate = errors%no_estimate(q)
+         finding%no_estimate = own%no_estimate
       end associate
    end function found
 

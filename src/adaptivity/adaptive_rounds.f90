@@ -13,15 +13,16 @@ module adaptive_rounds
    use accuracy_rounds, only: accuracy_rounds_type, by_division, finding_type, is_of_friction, &
       most_levels
    use clock, only: wall_seconds
+   use contact_extents, only: closed_length, point_before, spacing_at
    use contact_points, only: contact_points_type
    use contact_quantities, only: estimated
    use contact_system, only: contact_open
    use element_kinds, only: element_corner_count, side_node_count
-   use error_estimator, only: error_estimator_type, squared_errors
+   use error_estimator, only: error_estimator_type
    use errors, only: error_type
+   use field_recovery, only: squared_errors
    use growing_modes, only: analyse_stability
    use increments, only: advance
-   use interface_quantities, only: closed_length, point_before, spacing_at
    use kinds, only: dp
    use local_refinement, only: elements_at_surfaces, largest_part
    use mesh, only: mesh_type
@@ -207,7 +208,7 @@ contains
             if (uncertainty > by_division**most_levels*finding%allowed) levels = most_levels
             ! Where the last increment alone tells no error, the change by sides of half the size
             ! does. Where sides of two lengths meet, pressures of linear elements alternate.
-            if (ieee_is_nan(record%uncertainties(i)%total(q)) .and. finding%at_end <= 0.0_dp &
+            if (ieee_is_nan(record%uncertainties(q, i)%total) .and. finding%at_end <= 0.0_dp &
                .or. estimated(q)%name == 'peak_pressure' .and. &
                any(at_faces .and. side_node_count(model%mesh%element_kind) == 2)) then
                where (at_faces) of_elements = max(of_elements, levels)
@@ -217,14 +218,15 @@ contains
             if (is_of_friction(estimated(q)%name)) edges = [edges, record%contacts(i)%edges_stick]
             ! How often the sides at an edge must be divided for its resolution.
             length = estimated(q)%resolution*spacing_at(estimated(q), interfaces(i), &
-               record%uncertainties(i)%value(q))
+               record%uncertainties(q, i)%value)
             of_edges = 0
             if (length > 0.0_dp) of_edges = min(most_levels, ceiling(log(length/ &
                (part*finding%allowed))/log(2.0_dp)))
             call mark_edges(self, interfaces(i), edges, max(levels, of_edges))
             weight = influence(q, model%mesh, interfaces(i), record%contacts(i))
-            where (largest_part(weight*squared_errors(model%mesh, record), marked)) &
-               of_elements = max(of_elements, levels)
+            where (largest_part(weight*(squared_errors(model%mesh, record%stress_error) + &
+               squared_errors(model%mesh, record%heat_flux_error)), marked)) of_elements = &
+               max(of_elements, levels)
          end associate
       end do
    end subroutine take

@@ -10,8 +10,8 @@
 !> the element's shape functions. Not the 2 x 2 points at which s of elements of eight nodes is
 !> best: there s* is s, but for what smoothing leaves, and their sum would be near zero.
 module field_recovery
-   use element_kinds, only: element_node_count, kind_count, quad8, quad8_reduced, triangle3, &
-      triangle6
+   use element_kinds, only: element_corner_count, element_node_count, kind_count, quad8, &
+      quad8_reduced, triangle3, triangle6
    use kinds, only: dp
    use mesh, only: mesh_type, nodes_per_element
    use material_points, only: material_points_type
@@ -24,7 +24,10 @@ module field_recovery
    private
    public :: point_map_type, make_points, recovery_rules, stress_samples, &
       heat_flux_samples, average_samples, fit_of_points, element_error_type, measure_stress, &
-      measure_heat_flux, error_rules, error_record_type
+      measure_heat_flux, error_rules, error_record_type, squared_errors
+
+   !> Relative error of a body below which its fields are smooth but for rounding.
+   real(dp), parameter :: smooth = 1.0e-8_dp
 
    !> Estimated discretisation error of stress or of heat flux (Zienkiewicz & Zhu).
    type :: error_record_type
@@ -296,5 +299,31 @@ contains
       measured%square = measured%square + sum(volume*(d(:, 1)**2 + d(:, 2)**2))
       measured%volume = measured%volume + sum(volume)
    end subroutine measure_heat_flux
+
+   !> The part that each element has in the squared relative error of its body.
+   pure function squared_errors(mesh, estimate) result(error)
+      type(mesh_type), intent(in) :: mesh
+      type(error_record_type), intent(in) :: estimate    !! of the fields of an increment, or none
+      real(dp) :: error(size(mesh%element_kind))
+      real(dp) :: area, sums(mesh%body_count)
+      integer :: e
+
+      error = 0.0_dp
+      if (.not. allocated(estimate%element)) return
+      sums = 0.0_dp
+      do e = 1, size(error)
+         associate (b => mesh%element_body(e), x => mesh%coordinates(:, mesh%element_nodes( &
+            :element_corner_count(mesh%element_kind(e)), e)))
+            area = 0.5_dp*abs(sum(x(1, :)*cshift(x(2, :), 1) - cshift(x(1, :), 1)*x(2, :)))
+            if (estimate%body(b) > smooth) error(e) = estimate%element(e)**2*area
+            sums(b) = sums(b) + error(e)
+         end associate
+      end do
+      do e = 1, size(error)
+         associate (b => mesh%element_body(e))
+            if (sums(b) > 0.0_dp) error(e) = estimate%body(b)**2*error(e)/sums(b)
+         end associate
+      end do
+   end function squared_errors
 
 end module field_recovery

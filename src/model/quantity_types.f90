@@ -58,7 +58,7 @@ module quantity_types
       !> Words before its value in the block of an increment of the listing; blank: not there.
       character(30) :: label = ''
       !> Head of its column in tables: the passes, the contact points, the rows of a trade; blank:
-      !> no column.
+      !> no column. Of the maximum of a body its name in *VERIFY.
       character(14) :: head = ''
       integer :: width = 0                     !! characters of that column; in a trade it is fixed
       logical :: is_plain = .false.            !! no exponent there

@@ -161,7 +161,7 @@ contains
       call print_warnings(self, record)
       if (allocated(record%uncertainties) .and. reason_of_run(model) == no_reason) then
          do i = 1, size(interfaces)
-            call print_uncertainties(self%page, interfaces(i), record%uncertainties(i))
+            call print_uncertainties(self%page, interfaces(i), record%uncertainties(:, i))
          end do
          do i = 1, size(record%body_uncertainties)
             call print_maxima(self%page, model%mesh, i, record%body_uncertainties(i))

@@ -2,12 +2,12 @@
 !> end of a step the errors of bodies in the energy norm and the uncertainties of quantities.
 module listing_increments
    use, intrinsic :: ieee_arithmetic, only: ieee_is_nan, ieee_quiet_nan, ieee_value
+   use contact_extents, only: is_end_of_face
    use contact_points, only: contact_points_type
    use contact_quantities, only: contact_values, estimated, has_quantity
    use field_quantities, only: maxima
    use increment_quantities, only: history_estimated, history_value, leading_words, &
       part_values, stability_words
-   use interface_quantities, only: is_end_of_face
    use kinds, only: dp
    use listing_text, only: column, in_columns, page_type, to_right, zone_counts
    use mesh, only: mesh_type
@@ -258,13 +258,13 @@ contains
    subroutine print_uncertainties(page, points, errors)
       type(page_type), intent(inout) :: page               !! of the listing
       type(contact_points_type), intent(in) :: points      !! the contact points of the interface
-      type(uncertainty_type), intent(in) :: errors
+      type(uncertainty_type), intent(in) :: errors(:)      !! (estimated)
       type(string_type) :: names(size(estimated))
       integer :: q
 
       do q = 1, size(estimated)
-         if (is_worth_telling(q, errors%value(q), errors%total(q)) .and. &
-            .not. is_end_of_face(estimated(q), points, errors%value(q))) then
+         if (is_worth_telling(q, errors(q)%value, errors(q)%total) .and. &
+            .not. is_end_of_face(estimated(q), points, errors(q)%value)) then
             names(q)%value = words_of(estimated(q)%name)
          else
             names(q)%value = ''
@@ -277,13 +277,13 @@ contains
    !> Prints those of the quantities of an increment.
    subroutine print_history_uncertainties(page, errors)
       type(page_type), intent(inout) :: page               !! of the listing
-      type(uncertainty_type), intent(in) :: errors
+      type(uncertainty_type), intent(in) :: errors(:)      !! (history_estimated)
       type(string_type) :: names(size(history_estimated))
       integer :: q
 
       do q = 1, size(names)
          names(q)%value = ''
-         if (.not. ieee_is_nan(errors%value(q))) names(q)%value = trim(history_estimated(q)%name)
+         if (.not. ieee_is_nan(errors(q)%value)) names(q)%value = trim(history_estimated(q)%name)
       end do
       if (any([(names(q)%value /= '', q=1, size(names))])) call print_table(page, &
          'THE INCREMENT', maxval(len_trim(history_estimated%name)), names, errors)
@@ -301,10 +301,10 @@ contains
 
       do q = 1, size(maxima)
          names(q)%value = ''
-         if (.not. ieee_is_nan(errors%value(q))) names(q)%value = 'largest '//trim(maxima(q)%label)
+         if (errors%node(q) > 0) names(q)%value = 'largest '//trim(maxima(q)%label)
       end do
       if (any(errors%node > 0)) call print_table(page, 'BODY '//to_text(body), &
-         len('largest ') + maxval(len_trim(maxima%label)), names, errors)
+         len('largest ') + maxval(len_trim(maxima%label)), names, errors%maxima)
       do q = 1, size(maxima)
          if (errors%node(q) > 0) call page%wrapped('    ', names(q)%value//' at '// &
             place_words(mesh, errors%node(q)))
@@ -318,7 +318,7 @@ contains
       character(*), intent(in) :: title                    ! what they are of
       integer, intent(in) :: width                         ! of the names
       type(string_type), intent(in) :: names(:)            ! of the quantities; empty: not told
-      class(uncertainty_type), intent(in) :: errors
+      type(uncertainty_type), intent(in) :: errors(:)      ! of them
       type(string_type), allocatable :: rows(:)
       character(width) :: name
       real(dp) :: part
@@ -328,23 +328,23 @@ contains
       name = ''
       call append(rows, '    '//name//uncertainty_head)
       do q = 1, size(names)
-         associate (value => errors%value(q), total => errors%total(q))
+         associate (own => errors(q))
             if (names(q)%value == '') cycle
             name = names(q)%value
             part = ieee_value(part, ieee_quiet_nan)
-            if (abs(value) > 0.0_dp) part = 100.0_dp*total/abs(value)
-            call append(rows, trim('    '//name//column(value, 14, 6)// &
-               cell(total, 13, 'no estimate')//cell(part, 11, '-')// &
-               cell(errors%change(q), 12, '-')//cell(errors%scatter(q), 14, '-')// &
-               cell(errors%iteration(q), 14, '-')//'    '//largest_part(errors, q)))
+            if (abs(own%value) > 0.0_dp) part = 100.0_dp*own%total/abs(own%value)
+            call append(rows, trim('    '//name//column(own%value, 14, 6)// &
+               cell(own%total, 13, 'no estimate')//cell(part, 11, '-')// &
+               cell(own%change, 12, '-')//cell(own%scatter, 14, '-')// &
+               cell(own%iteration, 14, '-')//'    '//largest_part(own)))
          end associate
       end do
       call page%table('   NUMERICAL UNCERTAINTY (95 %) OF '//title//': how far values may be '// &
          'off to either side, with its parts', rows)
       do q = 1, size(names)
-         associate (why => errors%no_estimate(q))
+         associate (why => errors(q)%no_estimate)
             if (why == no_reason .or. names(q)%value == '') cycle
-            if (any([(names(k)%value /= '' .and. errors%no_estimate(k) == why, k=1, q - 1)])) cycle
+            if (any([(names(k)%value /= '' .and. errors(k)%no_estimate == why, k=1, q - 1)])) cycle
             call page%wrapped('    ', 'no estimate: '//words_of_reason(why))
          end associate
       end do
@@ -374,14 +374,13 @@ contains
    end function cell
 
    !> Which part of an uncertainty is the largest.
-   pure function largest_part(errors, q) result(name)
-      class(uncertainty_type), intent(in) :: errors
-      integer, intent(in) :: q
+   pure function largest_part(own) result(name)
+      type(uncertainty_type), intent(in) :: own
       character(10) :: name
       real(dp) :: parts(3)
       integer :: k
 
-      parts = [errors%change(q), errors%scatter(q), errors%iteration(q)]
+      parts = [own%change, own%scatter, own%iteration]
       name = ''
       if (any(ieee_is_nan(parts))) return
       k = maxloc(parts, dim=1)

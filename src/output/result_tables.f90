@@ -99,16 +99,15 @@ contains
    !> Adds the uncertainties of an interface, a body or the increment.
    subroutine append_uncertainties(self, errors)
       class(result_table_type), intent(inout) :: self     !! `/uncertainty/<name>`
-      class(uncertainty_type), intent(in) :: errors
+      type(uncertainty_type), intent(in) :: errors(:)
       integer :: i
 
       ! Strains come last, and are left out without laws.
       do i = 1, size(self%sets) - 1
-         call self%sets(i)%append([errors%value(i), errors%total(i), errors%change(i), &
-            errors%scatter(i), errors%iteration(i)])
+         call self%sets(i)%append([errors(i)%value, errors(i)%total, errors(i)%change, &
+            errors(i)%scatter, errors(i)%iteration])
       end do
-      call self%sets(size(self%sets))%append(real(errors%no_estimate(:size(self%sets) - &
-         1), dp))
+      call self%sets(size(self%sets))%append(real(errors(:size(self%sets) - 1)%no_estimate, dp))
    end subroutine append_uncertainties
 
    !> Quantities with uncertainties, as they are in `/uncertainty/<name>`, and why there are none.

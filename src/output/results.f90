@@ -288,10 +288,10 @@ contains
          n = size(interfaces)
          call self%tables(4 + n)%append(record)
          do i = 1, n
-            call self%tables(4 + n + i)%append(record%uncertainties(i))
+            call self%tables(4 + n + i)%append(record%uncertainties(:, i))
          end do
          do i = 1, size(record%body_uncertainties)
-            call self%tables(4 + 2*n + i)%append(record%body_uncertainties(i))
+            call self%tables(4 + 2*n + i)%append(record%body_uncertainties(i)%maxima)
          end do
          if (allocated(record%history_uncertainties)) call self%tables(size(self%tables))% &
             append(record%history_uncertainties)

@@ -2,12 +2,12 @@
 !> results at the last increment, with their uncertainties, and its checks. docs/results.md
 !> describes the document, docs/batch.md the row.
 module run_documents
+   use contact_extents, only: is_end_of_face
    use contact_points, only: contact_points_type
    use contact_quantities, only: contact_table, contact_values, estimated, has_quantity
    use contact_system, only: contact_open
    use field_quantities, only: maxima
    use increment_quantities, only: history_estimated
-   use interface_quantities, only: is_end_of_face
    use json, only: json_type
    use kinds, only: dp
    use model, only: model_type
@@ -105,7 +105,7 @@ contains
             if (is_end_of_face(quantity, points, value(1))) then
                call document%put('end of the face', 'no_estimate')
             else if (q > 0 .and. allocated(summary%errors)) then
-               call put_uncertainty(document, row, summary%errors(i), q)
+               call put_uncertainty(document, row, summary%errors(q, i))
             else if (q > 0) then
                call document%put(words_of_reason(reason_inside_step(model)), 'no_estimate')
             else
@@ -151,7 +151,7 @@ contains
          call row%put(name, value)
          q = find_quantity(history_estimated, name)
          if (q > 0 .and. allocated(summary%history_errors)) then
-            call put_uncertainty(document, row, summary%history_errors, q)
+            call put_uncertainty(document, row, summary%history_errors(q))
          else if (q > 0) then
             call document%put(words_of_reason(reason_inside_step(model)), 'no_estimate')
          end if
@@ -176,10 +176,10 @@ contains
                do q = 1, size(maxima)
                   if (errors%node(q) == 0) cycle
                   quantity = maxima(q)
-                  call open_quantity(document, quantity, errors%value(q), model)
-                  call row%put(trim(quantity%name)//' body '//to_text(b), errors%value(q))
+                  call open_quantity(document, quantity, errors%maxima(q)%value, model)
+                  call row%put(trim(quantity%name)//' body '//to_text(b), errors%maxima(q)%value)
                   call document%put(number(errors%node(q)), 'node')
-                  call put_uncertainty(document, row, errors, q)
+                  call put_uncertainty(document, row, errors%maxima(q))
                   call document%close('}')
                end do
                call document%open('[', 'singular_corners')
@@ -207,17 +207,16 @@ contains
    end subroutine open_quantity
 
    !> The uncertainty of a quantity, or why there is none.
-   subroutine put_uncertainty(document, row, errors, q)
+   subroutine put_uncertainty(document, row, own)
       type(json_type), intent(inout) :: document
       type(result_row_type), intent(inout) :: row    ! whose last quantity it is of
-      class(uncertainty_type), intent(in) :: errors
-      integer, intent(in) :: q                       ! the quantity
+      type(uncertainty_type), intent(in) :: own
 
-      if (errors%no_estimate(q) == no_reason) then
-         call document%put(errors%total(q), 'uncertainty')
-         call row%put_uncertainty(errors%total(q))
+      if (own%no_estimate == no_reason) then
+         call document%put(own%total, 'uncertainty')
+         call row%put_uncertainty(own%total)
       else
-         call document%put(words_of_reason(errors%no_estimate(q)), 'no_estimate')
+         call document%put(words_of_reason(own%no_estimate), 'no_estimate')
       end if
    end subroutine put_uncertainty
 

@@ -2,11 +2,11 @@
 !> increment, with their numerical uncertainties.
 module summary
    use, intrinsic :: ieee_arithmetic, only: ieee_is_nan, ieee_quiet_nan, ieee_value
+   use contact_extents, only: is_end_of_face, rises_to_end
    use contact_points, only: contact_points_type
    use contact_quantities, only: contact_values, end_words, estimated, has_quantity, &
       zone_words
    use contact_system, only: contact_open, contact_stick
-   use interface_quantities, only: is_end_of_face, rises_to_end
    use increment_quantities, only: history_estimated, leading_words, stability_words
    use equations, only: section_nodes
    use field_quantities, only: maxima
@@ -57,7 +57,8 @@ module summary
       real(dp) :: time = 0.0_dp                               !! total time [time]
       real(dp) :: load = 0.0_dp                               !! value on the load axis
       type(contact_record_type), allocatable :: contacts(:)   !! (interfaces)
-      type(uncertainty_type), allocatable :: errors(:)        !! (interfaces) or unallocated
+      !> (quantities, interfaces) or unallocated
+      type(uncertainty_type), allocatable :: errors(:, :)
       type(body_uncertainty_type), allocatable :: body_errors(:)   !! (bodies) or unallocated
       !> Smallest and largest temperature, heat in and out
       real(dp), allocatable :: heat(:)
@@ -69,7 +70,7 @@ module summary
       type(string_type), allocatable, private :: steps(:)   !! a line for each step and interface
       real(dp), allocatable :: solid_time          !! when the last point became solid [time]
       !> Uncertainties of `history_estimated` of increment_quantities, or none
-      type(uncertainty_type), allocatable :: history_errors
+      type(uncertainty_type), allocatable :: history_errors(:)
       !> (2, sections) forces of pre-tension sections and their uncertainties, NaN for none
       real(dp), allocatable, private :: pre_tension(:, :)
       character(:), allocatable :: stability       !! whether it lasts; or empty
@@ -325,7 +326,7 @@ contains
       q = find_quantity(history_estimated, name)
       if (q == 0) return
       words = mark_of(reason_inside_step(model))
-      if (allocated(self%history_errors)) words = uncertainty_words(self%history_errors, q)
+      if (allocated(self%history_errors)) words = uncertainty_words(self%history_errors(q))
    end function history_words
 
    !> The largest inelastic strains where they are not among the maxima of bodies.
@@ -340,7 +341,7 @@ contains
          if (self%inelastic_strain(i, b) <= 0.0_dp) cycle
          reason = reason_inside_step(model)
          if (reason == no_reason .and. allocated(self%body_errors)) then
-            if (.not. ieee_is_nan(self%body_errors(b)%value(first_strain + i))) cycle
+            if (.not. ieee_is_nan(self%body_errors(b)%maxima(first_strain + i)%value)) cycle
             reason = at_corner
          end if
          call append(lines, summary_line(strain_names(i), self%inelastic_strain(i, b), &
@@ -356,11 +357,11 @@ contains
       type(string_type), allocatable, intent(inout) :: lines(:)
       integer :: q
 
-      if (all(ieee_is_nan(errors%value)) .and. size(errors%corners) == 0) return
+      if (all(errors%node == 0) .and. size(errors%corners) == 0) return
       call append(lines, 'largest in '//body_name(model, body))
       do q = 1, size(maxima)
-         if (.not. ieee_is_nan(errors%value(q))) call append(lines, &
-            summary_line(trim(maxima(q)%label), errors%value(q), uncertainty_words(errors, q), &
+         if (errors%node(q) > 0) call append(lines, summary_line(trim(maxima(q)%label), &
+            errors%maxima(q)%value, uncertainty_words(errors%maxima(q)), &
             unit_label(maxima(q)%unit, model%units), place_words(model%mesh, errors%node(q))))
       end do
       if (size(errors%corners) > 0) call append(lines, '  '//corner_words(model%mesh, errors))
@@ -376,11 +377,11 @@ contains
 
       call append(lines, 'largest in '//to_text(size(errors))//' bodies')
       do q = 1, size(maxima)
-         values = [(errors(b)%value(q), b=1, size(errors))]
+         values = [(errors(b)%maxima(q)%value, b=1, size(errors))]
          b = maxloc(values, dim=1, mask=.not. ieee_is_nan(values))
          if (b > 0) call append(lines, summary_line(trim(maxima(q)%label), values(b), &
-            uncertainty_words(errors(b), q), unit_label(maxima(q)%unit, model%units), 'body '// &
-            to_text(b)//', '//place_words(model%mesh, errors(b)%node(q))))
+            uncertainty_words(errors(b)%maxima(q)), unit_label(maxima(q)%unit, model%units), &
+            'body '//to_text(b)//', '//place_words(model%mesh, errors(b)%node(q))))
       end do
       associate (cornered => count([(size(errors(b)%corners) > 0, b=1, size(errors))]))
          if (cornered > 0) call append(lines, '  '//to_text(cornered)//' of them with singular '// &
@@ -497,7 +498,7 @@ contains
          if (.not. is_had(estimated(q), model, i, self%contacts(i))) cycle
          values = contact_values(estimated(q)%name, self%contacts(i))
          uncertainty = mark_of(reason_inside_step(model))
-         if (allocated(self%errors)) uncertainty = uncertainty_words(self%errors(i), q)
+         if (allocated(self%errors)) uncertainty = uncertainty_words(self%errors(q, i))
          call append(lines, summary_line(words_of(estimated(q)%name), values(1), uncertainty, &
             unit_label(estimated(q)%unit, model%units), interfaces(i)%name))
       end do
@@ -527,7 +528,7 @@ contains
             uncertainty = repeat(' ', uncertainty_width)
             zone = end_words(estimated(q)%name, self%contacts(i))
          else if (allocated(self%errors)) then
-            uncertainty = uncertainty_words(self%errors(i), q)
+            uncertainty = uncertainty_words(self%errors(q, i))
          else
             uncertainty = mark_of(reason_inside_step(model))
          end if
@@ -535,7 +536,7 @@ contains
             model%units), &
             zone)
          if (allocated(self%errors) .and. estimated(q)%name == 'peak_pressure') then
-            if (self%errors(i)%no_estimate(q) == no_reason .and. rises_to_end(points, &
+            if (self%errors(q, i)%no_estimate == no_reason .and. rises_to_end(points, &
                self%contacts(i))) line = line//', at an end, where it may have no limit'
          end if
          zone = zones(estimated(q)%name, points, self%contacts(i))
@@ -615,12 +616,11 @@ contains
    end function words_of
 
    !> The uncertainty of a quantity, or why there is none.
-   pure function uncertainty_words(errors, q) result(words)
-      class(uncertainty_type), intent(in) :: errors
-      integer, intent(in) :: q                       ! the quantity
+   pure function uncertainty_words(own) result(words)
+      type(uncertainty_type), intent(in) :: own
       character(:), allocatable :: words
 
-      words = words_within(errors%value(q), errors%total(q), errors%no_estimate(q))
+      words = words_within(own%value, own%total, own%no_estimate)
    end function uncertainty_words
 
    !> An uncertainty with two digits, and in per cent of a value that is not small beside it, or why

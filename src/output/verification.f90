@@ -75,8 +75,8 @@ contains
          no_estimate = reason_inside_step(model)
          uncertainty = ieee_value(1.0_dp, ieee_quiet_nan)
          if (allocated(record%check_uncertainties)) then
-            no_estimate = record%check_uncertainties%no_estimate(i)
-            uncertainty = record%check_uncertainties%total(i)
+            no_estimate = record%check_uncertainties(i)%no_estimate
+            uncertainty = record%check_uncertainties(i)%total
          end if
          if (is_followed(model%verifications(i), record, model)) then
             call self%levels(i)%follow(model%verifications(i), record, model, interfaces, &

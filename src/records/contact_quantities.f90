@@ -9,8 +9,8 @@ module contact_quantities
    use zone_edges, only: edges_kept
    implicit none
    private
-   public :: contact_table, estimated, contact_values, end_words, geometry_values, has_quantity, &
-      zone_words
+   public :: contact_table, estimated, contact_values, end_words, estimated_values, &
+      geometry_values, has_quantity, zone_words
 
    ! Contact points are in the order of the columns of *CONTACT PRINT.
    type(quantity_type), parameter :: contact_table(*) = [ &
@@ -82,7 +82,7 @@ module contact_quantities
       quantity_type('heat_flux', of_contact_points, 'power/length^2', needs_heat, head='q', &
       width=11, is_on_faces=.true., description='heat flux from slave to master')]
 
-   !> Those with an uncertainty; components of uncertainty_type are in this order.
+   !> Those with an uncertainty; uncertainties of an interface are in this order.
    type(quantity_type), parameter :: estimated(*) = pack(contact_table, contact_table%is_estimated)
 
 contains
@@ -171,6 +171,17 @@ contains
          where (contact%is_beyond) filled = ieee_value(1.0_dp, ieee_quiet_nan)
       end function of_masters
    end function contact_values
+
+   !> Those with an uncertainty; NaN for an edge where there is none.
+   pure function estimated_values(contact) result(values)
+      type(contact_record_type), intent(in) :: contact   !! state of the interface
+      real(dp) :: values(size(estimated))
+      integer :: q
+
+      do q = 1, size(estimated)
+         values(q:q) = contact_values(estimated(q)%name, contact)
+      end do
+   end function estimated_values
 
    !> A quantity of the contact points that the mesh gives.
    pure function geometry_values(name, points, node_number) result(values)

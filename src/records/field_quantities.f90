@@ -70,18 +70,19 @@ module field_quantities
       quantity_type('heat_flux_error', of_elements, 'power/length^2', needs_heat, &
       description='estimated error of the heat flux by the mesh, rms in the element')]
 
-   !> The maxima of a body; components of body_uncertainty_type are in this order.
+   !> The maxima of a body; those of body_uncertainty_type are in this order.
    type(quantity_type), parameter :: maxima(*) = [ &
       quantity_type('von_mises', of_bodies, 'stress', needs_mechanics, label='von Mises stress', &
-      order=0.9_dp, &
+      head='MISES', order=0.9_dp, &
       description='largest equivalent stress of von Mises away from singular corners'), &
       quantity_type('temperature', of_bodies, 'temperature', needs_heat, label='temperature', &
-      order=0.9_dp, description='largest temperature'), &
+      head='NT', order=0.9_dp, description='largest temperature'), &
       quantity_type('equivalent_plastic_strain', of_bodies, '-', needs_laws, &
-      label='plastic strain', order=0.9_dp, &
+      label='plastic strain', head='PEEQ', order=0.9_dp, &
       description='largest equivalent plastic strain away from singular corners'), &
       quantity_type('equivalent_creep_strain', of_bodies, '-', needs_laws, label='creep strain', &
-      order=0.9_dp, description='largest equivalent creep strain away from singular corners')]
+      head='CEEQ', order=0.9_dp, &
+      description='largest equivalent creep strain away from singular corners')]
 
 contains
 

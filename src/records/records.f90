@@ -15,22 +15,22 @@ module records
    public :: add_attempts, note_failure
    public :: uncertainty_type, stability_record_type
 
-   !> Numerical uncertainties (95 %) of numbers: how far each may be off to either side. NaN where
-   !> there is none. Arrays over the quantities of an interface that have one (`estimated` of
-   !> contact_quantities), over those of *VERIFY cards, or over those of an increment.
+   !> Numerical uncertainty (95 %) of a number: how far it may be off to either side.
    type :: uncertainty_type
-      real(dp), allocatable :: value(:)        !! of the quantities; NaN where there is none
-      real(dp), allocatable :: total(:)        !! the uncertainties: the sum of the next three
-      real(dp), allocatable :: change(:)       !! by the change on a finer mesh
-      real(dp), allocatable :: scatter(:) !! by scatter over increments and places between nodes
-      real(dp), allocatable :: iteration(:)    !! by what the fixed point has left
-      integer, allocatable :: no_estimate(:)   !! why there is none, a reason of no_estimates
+      real(dp) :: value = 0.0_dp             !! the number; NaN where there is none
+      ! These are NaN where there is none.
+      real(dp) :: total = 0.0_dp             !! the uncertainty: the sum of the next three
+      real(dp) :: change = 0.0_dp            !! by the change on a finer mesh
+      real(dp) :: scatter = 0.0_dp           !! by scatter over increments and places between nodes
+      real(dp) :: iteration = 0.0_dp         !! by what the fixed point has left
+      integer :: no_estimate = 0             !! why there is none, a reason of no_estimates
       !> What one finer mesh tells of a part of those that have none; 0 where it tells nothing
-      real(dp), allocatable :: at_end(:)
+      real(dp) :: at_end = 0.0_dp
    end type uncertainty_type
 
-   !> Those of the maxima of a body; arrays over `maxima` of field_quantities.
-   type, extends(uncertainty_type) :: body_uncertainty_type
+   !> Those of a body; arrays over `maxima` of field_quantities.
+   type :: body_uncertainty_type
+      type(uncertainty_type), allocatable :: maxima(:)
       integer, allocatable :: node(:)          !! where they are, 0 where there is none
       !> Nodes at which stress may have no limit and round which it is larger
       integer, allocatable :: corners(:)
@@ -180,12 +180,13 @@ module records
       logical :: has_new_operators = .false. !! whether they were formed again
       type(attempt_record_type), allocatable :: failed(:)       !! these; unallocated for none
       type(field_record_type) :: fields = field_record_type()   !! fields
-      !> (interfaces) at the end of a step, with ERRORS=FULL of any increment; else unallocated
-      type(uncertainty_type), allocatable :: uncertainties(:)
+      !> (quantities, interfaces) of `estimated` of contact_quantities, at the end of a step, with
+      !> ERRORS=FULL of any increment; else unallocated
+      type(uncertainty_type), allocatable :: uncertainties(:, :)
       type(body_uncertainty_type), allocatable :: body_uncertainties(:)   !! (bodies) likewise
-      type(uncertainty_type), allocatable :: check_uncertainties     !! *VERIFY cards, likewise
+      type(uncertainty_type), allocatable :: check_uncertainties(:)  !! (*VERIFY cards) likewise
       !> With ERRORS=FULL of `history_estimated` of increment_quantities; else unallocated
-      type(uncertainty_type), allocatable :: history_uncertainties
+      type(uncertainty_type), allocatable :: history_uncertainties(:)
       !> With ERRORS=FULL of displacements and temperatures, for *NODE PRINT; else unallocated
       type(field_record_type), allocatable :: field_uncertainties
       !> (3, *NODE PRINT cards) of the sums of RF1, RF2 and RFL, likewise

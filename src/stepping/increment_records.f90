@@ -37,7 +37,7 @@ module increment_records
       stick_edges
    implicit none
    private
-   public :: complete_record, measure_contact, note_edges
+   public :: complete_record, contacts_of_state, note_edges
 
    !> Part of the contact forces that their solution loses by rounding: the spacing of numbers times
    !> the condition of the contact system, some 1e4. A sum of shear forces below it is none.
@@ -297,14 +297,39 @@ contains
       if (n > 0 .and. .not. any(pressure(beside) > 0.0_dp)) resting_beside = beside(n)
    end function resting_beside
 
+   !> The interfaces in a state, without slip, temperatures, conductance and heat flux.
+   subroutine contacts_of_state(bodies, state, contacts)
+      type(reduced_bodies_type), intent(in) :: bodies
+      type(solution_state_type), intent(in) :: state
+      type(contact_record_type), allocatable, intent(out) :: contacts(:)
+      type(contact_points_type) :: points
+      integer :: first, i, last
+
+      allocate (contacts(size(bodies%points%interface_start) - 1))
+      associate (start => bodies%points%interface_start, contact => state%contact)
+         do i = 1, size(contacts)
+            first = start(i)
+            last = start(i + 1) - 1
+            call bodies%view(i, points)
+            contacts(i)%contact_state = contact%contact_state(first:last)
+            contacts(i)%gap = contact%gap(first:last)
+            call measure_contact(points, bodies%laws%friction(first), &
+               contacts(i)%contact_state /= contact_open, contact%force(first:last), &
+               contact%shear_force(first:last), contacts(i))
+            contacts(i)%heat_rate = sum(heat_across(points%weight, &
+               state%flux_conductance(first:last), state%jump(first:last)))
+         end do
+      end associate
+   end subroutine contacts_of_state
+
    !> Tractions, sums and edges of an interface from its nodal forces.
    pure subroutine measure_contact(points, friction, closed, force, shear_force, record)
-      type(contact_points_type), intent(in) :: points      !! the contact points of the interface
-      type(friction_law_type), intent(in) :: friction      !! the law of all of them
-      logical, intent(in) :: closed(:)                    !! (m) contact points that have a traction
-      real(dp), intent(in) :: force(:)                     !! (m) 0 at the others [force]
-      real(dp), intent(in) :: shear_force(:)               !! (m) on the slave [force]
-      type(contact_record_type), intent(inout) :: record   !! has states and gaps
+      type(contact_points_type), intent(in) :: points      ! the contact points of the interface
+      type(friction_law_type), intent(in) :: friction      ! the law of all of them
+      logical, intent(in) :: closed(:)                    ! (m) contact points that have a traction
+      real(dp), intent(in) :: force(:)                     ! (m) 0 at the others [force]
+      real(dp), intent(in) :: shear_force(:)               ! (m) on the slave [force]
+      type(contact_record_type), intent(inout) :: record   ! has states and gaps
       type(contact_profile_type) :: profile
 
       record%pressure = pressures(points, force, closed)

@@ -9,6 +9,7 @@ module deck_trade
    use adaptive_rounds, only: adaptive_rounds_type, increment_taker_type
    use clock, only: wall_seconds
    use command_line, only: command_type
+   use contact_extents, only: closed_length
    use contact_points, only: contact_points_type
    use contact_quantities, only: contact_values
    use deck_files, only: input_files_type, results_of
@@ -17,7 +18,6 @@ module deck_trade
    use errors, only: error_type, set_error, status_internal, status_interrupted, &
       status_no_convergence, status_verify
    use file_calls, only: make_folder, try_file
-   use interface_quantities, only: closed_length
    use interruption, only: caught_signal
    use kinds, only: dp
    use messages, only: print_error, print_line

@@ -60,8 +60,8 @@ PARTS = {
                                   "tail_motions:least_drive"},
     "films": {"loads:film_matrix", "unit_loads:film_matrix"},
     "estimated errors": {
-        "body_maxima", "companion_states", "divided_mesh", "error_estimator", "interface_quantities",
-        "quantity_histories", "singular_corners", "uncertainty_rule",
+        "body_maxima", "companion_states", "contact_extents", "divided_mesh", "error_estimator",
+        "quantity_histories", "uncertainty_rule",
     },
     "refinement": {"local_refinement", "mesh_division", "refinement"},
     "printed tables": {"increment_records:points_of_set", "listing_tables:print_contact_table",

@@ -1,58 +1,18 @@
-!> The quantities of an interface whose errors are estimated.
-module interface_quantities
+!> How far the contact of an interface reaches, by its record: widths and lengths, the spacing at
+!> edges, which of these are ends of the face, and where its pressure is largest.
+module contact_extents
    use, intrinsic :: ieee_arithmetic, only: ieee_is_nan
    use contact_points, only: contact_points_type, on_axis
-   use contact_quantities, only: contact_values, estimated
    use contact_system, only: contact_open
-   use increment_records, only: measure_contact
-   use heat_equation, only: heat_across
    use kinds, only: dp
    use quantity_types, only: quantity_type
    use records, only: contact_record_type
-   use reduced_bodies, only: reduced_bodies_type
-   use solution_state, only: solution_state_type
    implicit none
    private
-   public :: closed_length, contact_width, contacts_of_state, is_end_of_face, peak_is_at_end, &
-      peaks_at_axis, peaks_at_corner, point_before, quantities_of, rises_to_end, spacing_at
+   public :: closed_length, contact_width, is_end_of_face, peak_is_at_end, peaks_at_axis, &
+      peaks_at_corner, point_before, rises_to_end, spacing_at
 
 contains
-
-   !> The estimated quantities of an interface.
-   pure function quantities_of(contact) result(values)
-      type(contact_record_type), intent(in) :: contact   !! its state
-      real(dp) :: values(size(estimated))                !! NaN for an edge where there is none
-      integer :: q
-
-      do q = 1, size(estimated)
-         values(q:q) = contact_values(estimated(q)%name, contact)
-      end do
-   end function quantities_of
-
-   !> The interfaces in a state, without slip, temperatures, conductance and heat flux.
-   subroutine contacts_of_state(bodies, state, contacts)
-      type(reduced_bodies_type), intent(in) :: bodies
-      type(solution_state_type), intent(in) :: state
-      type(contact_record_type), allocatable, intent(out) :: contacts(:)
-      type(contact_points_type) :: points
-      integer :: first, i, last
-
-      allocate (contacts(size(bodies%points%interface_start) - 1))
-      associate (start => bodies%points%interface_start, contact => state%contact)
-         do i = 1, size(contacts)
-            first = start(i)
-            last = start(i + 1) - 1
-            call bodies%view(i, points)
-            contacts(i)%contact_state = contact%contact_state(first:last)
-            contacts(i)%gap = contact%gap(first:last)
-            call measure_contact(points, bodies%laws%friction(first), &
-               contacts(i)%contact_state /= contact_open, contact%force(first:last), &
-               contact%shear_force(first:last), contacts(i))
-            contacts(i)%heat_rate = sum(heat_across(points%weight, &
-               state%flux_conductance(first:last), state%jump(first:last)))
-         end do
-      end associate
-   end subroutine contacts_of_state
 
    !> Width of all zones of contact, from edge to edge as the summary has it. Contact points whose
    !> zones have no width, as one that is closed alone may, have their tributary length.
@@ -189,4 +149,4 @@ contains
       end associate
    end function rises_to_end
 
-end module interface_quantities
+end module contact_extents
