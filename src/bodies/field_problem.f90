@@ -394,7 +394,7 @@ contains
       if (present(inside)) inside = solution(:, 1) + solution(:, 2)
    end subroutine condense_inside
 
-   !> The load of an increment.
+   !> The load of an increment; without forces inside of pieces where what they leave is given.
    function load_of(self, problem, forces, given, left) result(load)
       class(field_reduction_type), intent(in) :: self
       type(field_problem_type), intent(in) :: problem     !! that it is of
@@ -406,8 +406,6 @@ contains
 
       load%given = given
       supported = problem%map%supported(given)
-      if (allocated(problem%division%piece)) load%forces = self%forces_inside(problem, forces, &
-         given)
       if (present(left)) then
          supported = merge(supported, 0.0_dp, problem%division%piece == 0)
          acting = left
@@ -418,7 +416,10 @@ contains
             acting = acting - problem%matrix%multiply(supported)
             if (allocated(self%added%value)) acting = acting - self%added%multiply(supported)
          end if
-         if (allocated(problem%division%piece)) call self%pieces%condense(acting)
+         if (allocated(problem%division%piece)) then
+            load%forces = self%forces_inside(problem, forces, given)
+            call self%pieces%condense(acting)
+         end if
       end if
       load%rhs = reshape(problem%map%load(acting, given, &
          problem%map%link_stiffness(problem%matrix)), [problem%map%equations, 1])

@@ -15,6 +15,7 @@
 !> The last unknowns, the tail, are those that contact acts on, and the forces. With the former zero
 !> the bodies are welded; the reduced problem on the tail is eq. (2.4) solved partially.
 module linear_constraints
+   use blas_lapack, only: daxpy
    use constraint_rows, only: constraint_rows_type, elimination_type, largest, least_coefficients, &
       negligible, resolve, row_origin_type, write_values
    use dense, only: product_of, transposed_product
@@ -277,9 +278,8 @@ contains
                end associate
             end do
             do term = by%start(i), by%start(i + 1) - 1
-               associate (column => full(:, column_of(by%value(term))))
-                  column = column + by%coefficient(term)*row
-               end associate
+               call daxpy(size(row), by%coefficient(term), row, 1, &
+                  full(:, column_of(by%value(term))), 1)
             end do
          end do
       end associate
@@ -294,7 +294,7 @@ contains
       logical, intent(out) :: is_full(:)              ! (dofs)
       integer, allocatable, intent(out) :: unknown(:) ! ascending
       logical :: is_joined(size(is_full)), is_part(self%equations)
-      integer :: i
+      integer :: i, k
 
       is_joined = .false.
       is_part = .false.
@@ -307,8 +307,11 @@ contains
             if (is_joined(i)) is_part(by%value(by%start(i):by%start(i + 1) - 1)) = .true.
          end do
          do i = 1, size(is_full)
-            is_full(i) = start(i + 1) > start(i) .and. &
-               all(is_part(by%value(by%start(i):by%start(i + 1) - 1)))
+            is_full(i) = start(i + 1) > start(i)
+            if (.not. is_full(i)) cycle
+            do k = by%start(i), by%start(i + 1) - 1
+               is_full(i) = is_full(i) .and. is_part(by%value(k))
+            end do
          end do
       end associate
       unknown = pack([(i, i=1, self%equations)], is_part)
@@ -321,7 +324,11 @@ contains
       type(sparse_matrix_type) :: rest
       integer :: i, k, n
 
-      rest = matrix
+      rest%row_count = matrix%row_count
+      rest%column_count = matrix%column_count
+      allocate (rest%row_start, mold=matrix%row_start)
+      allocate (rest%column, mold=matrix%column)
+      allocate (rest%value, mold=matrix%value)
       n = 0
       do i = 1, matrix%row_count
          rest%row_start(i) = n + 1
