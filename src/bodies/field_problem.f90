@@ -110,6 +110,7 @@ module field_problem
       private
       integer :: numbering = 0, values = 0
       type(sparse_matrix_type) :: added = sparse_matrix_type()
+      ! Inside of pieces equations and tail are all degrees of freedom.
       real(dp), allocatable :: rhs(:, :)           !! (equations, n)
       real(dp), allocatable :: condensed(:, :)     !! (tail, n)
       real(dp), allocatable :: solution(:, :)      !! (equations, n), or none
