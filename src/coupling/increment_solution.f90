@@ -101,10 +101,11 @@ contains
       type(loads_type), intent(in) :: loads
       type(trial_type), intent(inout) :: trial
       type(error_type), allocatable, intent(out) :: error
-      real(dp), allocatable :: left(:), inside(:)
+      real(dp), allocatable :: inside(:), left(:), sources(:)
 
+      sources = history_of_heat(bodies, trial%data)
       associate (data => trial%data, temperature => trial%next%temperature, &
-         given => loads%temperature%value, sources => history_of_heat(bodies, trial%data))
+         given => loads%temperature%value)
          if (only_places(bodies, heat, trial)) call heat%condense_inside(bodies%thermal, sources, &
             given, trial%known(inside_heat), left, inside)
          data%heat = heat%load_of(bodies%thermal, sources, given, left)
