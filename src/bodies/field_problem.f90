@@ -87,6 +87,8 @@ module field_problem
       procedure :: is_for
       procedure :: is_of
       procedure :: factor
+      procedure :: condense_inside
+      procedure :: forces_inside
       procedure :: load_of
       procedure :: condense_load
       procedure :: recover
@@ -108,10 +110,12 @@ module field_problem
       private
       integer :: numbering = 0, values = 0
       type(sparse_matrix_type) :: added = sparse_matrix_type()
+      ! Inside of pieces equations and tail are all degrees of freedom.
       real(dp), allocatable :: rhs(:, :)           !! (equations, n)
       real(dp), allocatable :: condensed(:, :)     !! (tail, n)
       real(dp), allocatable :: solution(:, :)      !! (equations, n), or none
    contains
+      procedure, private :: begin
       procedure :: take_off
       procedure :: keep
    end type solved_loads_type
@@ -343,30 +347,79 @@ contains
       end associate
    end function matrix_of_unknowns
 
-   !> The load of an increment.
-   function load_of(self, problem, forces, given) result(load)
+   !> Forces less those of prescribed values that are no part of what pieces leave: on the pieces
+   !> these act as forces do.
+   function forces_inside(self, problem, forces, given) result(acting)
+      class(field_reduction_type), intent(in) :: self
+      type(field_problem_type), intent(in) :: problem     !! that it is of, with pieces
+      real(dp), intent(in) :: forces(:)                   !! (dofs) nodal forces or heat rates
+      real(dp), intent(in) :: given(:)                    !! (dofs) prescribed values
+      real(dp), dimension(size(given)) :: acting, fixed
+
+      acting = forces
+      fixed = merge(given, 0.0_dp, problem%division%piece < 0)
+      if (.not. any(abs(fixed) > 0.0_dp)) return
+      acting = acting - problem%matrix%multiply(fixed)
+      if (allocated(self%added%value)) acting = acting - self%added%multiply(fixed)
+   end function forces_inside
+
+   !> What forces leave on the degrees of freedom that pieces keep, wherever faces that slide are;
+   !> what earlier ones say of it is taken from them.
+   subroutine condense_inside(self, problem, forces, given, known, left, inside)
+      class(field_reduction_type), intent(in) :: self
+      type(field_problem_type), intent(in) :: problem     !! that it is of, with pieces
+      real(dp), intent(in) :: forces(:)                   !! (dofs) nodal forces or heat rates
+      real(dp), intent(in) :: given(:)                    !! (dofs) prescribed values
+      type(solved_loads_type), intent(inout) :: known     !! earlier loads of the pieces
+      real(dp), allocatable, intent(out) :: left(:)       !! (dofs) forces on what is kept
+      !> (dofs) values that they make inside of the pieces while those kept are zero
+      real(dp), allocatable, intent(out), optional :: inside(:)
+      real(dp), dimension(size(forces)) :: acting, rest
+      real(dp), allocatable :: solution(:, :)
+
+      call known%begin(self%division, self%kept_values, self%kept_added)
+      acting = self%forces_inside(problem, forces, given)
+      rest = merge(acting, 0.0_dp, problem%division%piece > 0)
+      left = acting - rest
+      allocate (solution(merge(size(rest), 0, present(inside)), 2), source=0.0_dp)
+      acting = rest
+      call known%take_off(rest, left, solution(:, 1))
+      if (maxval(abs(rest)) > rounding*maxval(abs(acting))) then
+         acting = rest
+         call self%pieces%condense(acting)
+         acting = merge(acting, 0.0_dp, problem%division%piece == 0)
+         left = left + acting
+         if (present(inside)) call self%pieces%fill(solution(:, 2), rest)
+         call known%keep(rest, acting, solution(:, 2))
+      end if
+      if (present(inside)) inside = solution(:, 1) + solution(:, 2)
+   end subroutine condense_inside
+
+   !> The load of an increment; without forces inside of pieces where what they leave is given.
+   function load_of(self, problem, forces, given, left) result(load)
       class(field_reduction_type), intent(in) :: self
       type(field_problem_type), intent(in) :: problem     !! that it is of
       real(dp), intent(in) :: forces(:)                   !! (dofs) nodal forces or heat rates
       real(dp), intent(in) :: given(:)                    !! (dofs) prescribed values
+      real(dp), intent(in), optional :: left(:)           !! (dofs) as from condense_inside
       type(field_load_type) :: load                       !! not condensed
-      real(dp), dimension(size(given)) :: acting, fixed, supported
+      real(dp), dimension(size(given)) :: acting, supported
 
       load%given = given
       supported = problem%map%supported(given)
-      acting = forces
-      if (any(abs(supported) > 0.0_dp)) then
-         acting = acting - problem%matrix%multiply(supported)
-         if (allocated(self%added%value)) acting = acting - self%added%multiply(supported)
-      end if
-      if (allocated(problem%division%piece)) then
-         call self%pieces%condense(acting)
-         load%forces = forces
-         ! Prescribed values that are no part of what is left act on the pieces as forces do.
-         fixed = merge(given, 0.0_dp, problem%division%piece < 0)
-         if (any(abs(fixed) > 0.0_dp)) then
-            load%forces = load%forces - problem%matrix%multiply(fixed)
-            if (allocated(self%added%value)) load%forces = load%forces - self%added%multiply(fixed)
+      if (present(left)) then
+         supported = merge(supported, 0.0_dp, problem%division%piece == 0)
+         acting = left
+         if (any(abs(supported) > 0.0_dp)) acting = acting - self%kept%multiply(supported)
+      else
+         acting = forces
+         if (any(abs(supported) > 0.0_dp)) then
+            acting = acting - problem%matrix%multiply(supported)
+            if (allocated(self%added%value)) acting = acting - self%added%multiply(supported)
+         end if
+         if (allocated(problem%division%piece)) then
+            load%forces = self%forces_inside(problem, forces, given)
+            call self%pieces%condense(acting)
          end if
       end if
       load%rhs = reshape(problem%map%load(acting, given, &
@@ -375,12 +428,14 @@ contains
 
    !> Condenses a load on the tail. What earlier loads say of it is taken from them: steps that ramp
    !> their loads solve for a first one only.
-   subroutine condense_load(self, problem, load, known, welded)
+   subroutine condense_load(self, problem, load, known, welded, inside)
       class(field_reduction_type), intent(in) :: self
       type(field_problem_type), intent(in) :: problem     !! that it is of
       type(field_load_type), intent(inout) :: load        !! receives what is condensed
       type(solved_loads_type), intent(inout) :: known     !! earlier loads of the field
       real(dp), intent(out), optional :: welded(:)        !! (dofs) values where the tail is zero
+      !> (dofs) as from condense_inside: values inside of pieces are these, and need no solution
+      real(dp), intent(in), optional :: inside(:)
       real(dp) :: rest(problem%map%equations, 1), condensed(problem%map%tail, 1)
       real(dp), allocatable :: solution(:, :)
 
@@ -389,13 +444,7 @@ contains
          if (present(welded)) welded = self%recover(problem, load, 0.0_dp*load%condensed)
          return
       end if
-      if (known%numbering /= self%numbering .or. known%values /= self%values .or. &
-         .not. same_values(known%added, self%added)) then
-         known = solved_loads_type()
-         known%numbering = self%numbering
-         known%values = self%values
-         known%added = self%added
-      end if
+      call known%begin(self%numbering, self%values, self%added)
       allocate (load%condensed(problem%map%tail), source=0.0_dp)
       allocate (solution(merge(problem%map%equations, 0, present(welded)), 2), source=0.0_dp)
       rest = load%rhs
@@ -412,7 +461,11 @@ contains
       end if
       if (.not. present(welded)) return
       welded = problem%map%expand(solution(:, 1), load%given)
-      if (allocated(load%forces)) call self%pieces%fill(welded, load%forces)
+      if (present(inside)) then
+         welded = welded + inside
+      else if (allocated(load%forces)) then
+         call self%pieces%fill(welded, load%forces)
+      end if
    end subroutine condense_load
 
    !> Values of all degrees of freedom under a load.
@@ -598,6 +651,21 @@ contains
       call self%solver%release()
       deallocate (self%solver)
    end subroutine release_tail
+
+   !> Forgets loads of another reduction.
+   pure subroutine begin(self, numbering, values, added)
+      class(solved_loads_type), intent(inout) :: self
+      integer, intent(in) :: numbering, values         ! of unknowns or pieces; of the matrix
+      type(sparse_matrix_type), intent(in) :: added    ! to this
+
+      if (self%numbering == numbering .and. self%values == values) then
+         if (same_values(self%added, added)) return
+      end if
+      if (allocated(self%rhs)) deallocate (self%rhs, self%condensed, self%solution)
+      self%numbering = numbering
+      self%values = values
+      self%added = added
+   end subroutine begin
 
    !> Takes from a load its parts along known ones, twice for their rounding, and adds these parts'
    !> condensed loads and solutions.

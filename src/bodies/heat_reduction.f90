@@ -58,7 +58,7 @@ module heat_reduction
       procedure :: is_divided
       procedure :: loads_of_tail
       procedure :: has_tail_forces
-      procedure :: tail_forces
+      procedure :: kept_forces
       procedure :: means_of_tail
       procedure :: friction_on_tail
       procedure :: conductors
@@ -261,8 +261,8 @@ contains
       end if
    end function loads_of_tail
 
-   !> Whether forces on what pieces keep are known of the thermal tail, whose loads are formed as
-   !> they are asked for.
+   !> Whether forces on what pieces keep are known of the temperatures that they keep, and loads are
+   !> formed as they are asked for.
    pure logical function has_tail_forces(self, bodies)
       class(heat_reduction_type), intent(in) :: self
       type(reduced_bodies_type), intent(in) :: bodies
@@ -271,17 +271,13 @@ contains
    end function has_tail_forces
 
    !> These forces.
-   function tail_forces(self, bodies, on_tail) result(forces)
+   pure function kept_forces(self, temperature) result(forces)
       class(heat_reduction_type), intent(in) :: self
-      type(reduced_bodies_type), intent(in) :: bodies
-      real(dp), intent(in) :: on_tail(:)                  !! (thermal tail) [temperature]
-      real(dp) :: forces(bodies%mechanical%matrix%row_count)   !! (2 nodes) [force]
+      real(dp), intent(in) :: temperature(:)   !! (nodes) those that pieces keep, others not used
+      real(dp) :: forces(2*size(temperature))  !! (2 nodes) [force]
 
-      associate (kept => self%extended_to_kept(bodies%thermal, reshape(on_tail, &
-         [size(on_tail), 1])))
-         forces = self%kept_load%multiply(kept(:, 1))
-      end associate
-   end function tail_forces
+      forces = self%kept_load%multiply(temperature)
+   end function kept_forces
 
    !> Mean temperatures of the faces that the thermal tail makes.
    function means_of_tail(self, bodies, on_tail) result(mean)
@@ -319,8 +315,8 @@ contains
    end function friction_on_tail
 
    !> Forces on the degrees of freedom that pieces of the bodies keep, of a unit temperature of each
-   !> node that they keep and that is not prescribed: the same for all places of faces that slide,
-   !> as the matrices that they leave are.
+   !> node that they keep: the same for all places of faces that slide, as the matrices that they
+   !> leave are.
    subroutine form_kept_load(self, bodies)
       class(heat_reduction_type), intent(inout) :: self
       type(reduced_bodies_type), intent(in) :: bodies
@@ -331,7 +327,8 @@ contains
       associate (heat => bodies%thermal, piece => bodies%mechanical%division%piece)
          call list%reserve(count(piece == 0)*count(heat%division%piece == 0))
          do k = 1, size(unit)
-            if (heat%division%piece(k) /= 0 .or. .not. heat%map%moves(k)) cycle
+            if (heat%division%piece(k) /= 0) cycle
+            if (.not. (heat%map%moves(k) .or. heat%map%is_given(k))) cycle
             unit = 0.0_dp
             unit(k) = 1.0_dp
             call self%pieces%fill(unit)

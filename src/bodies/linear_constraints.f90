@@ -15,6 +15,7 @@
 !> The last unknowns, the tail, are those that contact acts on, and the forces. With the former zero
 !> the bodies are welded; the reduced problem on the tail is eq. (2.4) solved partially.
 module linear_constraints
+   use blas_lapack, only: daxpy
    use constraint_rows, only: constraint_rows_type, elimination_type, largest, least_coefficients, &
       negligible, resolve, row_origin_type, write_values
    use dense, only: product_of, transposed_product
@@ -218,46 +219,29 @@ contains
 
    !> The same of a matrix that pieces of bodies leave between the nodes of faces, where it is full:
    !> T is full, too, where mortar points write the slave's values w by all others. With o for the
-   !> rest, the products of T_w are T_w^T (A_ww T_w/2 + A_wo T_o) and its transpose.
+   !> rest, half of T^T A T and half of its transpose are
+   !>
+   !>    T_w^T (A_ww T_w/2 + A_wo T_o) + T_o^T A_oo T_o/2.
+   !>
+   !> What no written value is joined to stays sparse.
    pure function transform_kept(self, matrix, stiffness) result(lower)
       class(linear_constraints_type), intent(in) :: self
       type(sparse_matrix_type), intent(in) :: matrix  !! (dofs, dofs) K', symmetric, both triangles
       real(dp), intent(in) :: stiffness(:)            !! (links) k
       type(sparse_matrix_type) :: lower               !! (equations, equations) by rows
-      type(sparse_matrix_type) :: rest
-      real(dp), allocatable :: half(:, :), of_others(:, :), written_by(:, :), z(:, :)
+      real(dp), allocatable :: full(:, :), half(:, :), of_others(:, :), row(:), written_by(:, :)
       integer, allocatable :: unknown(:), written(:)
-      logical, allocatable :: is_rest(:)
-      integer :: column_of(self%equations), i, j, k, place(matrix%row_count), q, term
+      integer :: column_of(self%equations), i, k, place(matrix%row_count), q, term
+      logical :: is_full(matrix%row_count)
 
+      call find_full(self, matrix, is_full, unknown)
+      column_of = 0
+      column_of(unknown) = [(i, i=1, size(unknown))]
       associate (by => self%by_unknowns)
-         written = pack([(i, i=1, by%count)], by%start(2:by%count + 1) - by%start(:by%count) > &
-            most_terms .and. matrix%row_start(2:) > matrix%row_start(:by%count))
-         if (size(written) == 0) then
-            lower = self%transform(matrix, stiffness)
-            return
-         end if
+         written = pack([(i, i=1, by%count)], is_full .and. by%start(2:by%count + 1) - &
+            by%start(:by%count) > most_terms)
          place = 0
          place(written) = [(i, i=1, size(written))]
-         column_of = 0
-         allocate (is_rest(size(matrix%value)))
-         rest = matrix
-         do i = 1, matrix%row_count
-            do k = matrix%row_start(i), matrix%row_start(i + 1) - 1
-               j = matrix%column(k)
-               is_rest(k) = place(i) == 0 .and. place(j) == 0
-               if (is_rest(k)) cycle
-               do term = by%start(j), by%start(j + 1) - 1
-                  column_of(by%value(term)) = 1
-               end do
-            end do
-            rest%row_start(i + 1) = rest%row_start(i) + count(is_rest(matrix%row_start(i): &
-               matrix%row_start(i + 1) - 1))
-         end do
-         rest%column = pack(matrix%column, is_rest)
-         rest%value = pack(matrix%value, is_rest)
-         unknown = pack([(i, i=1, self%equations)], column_of > 0)
-         column_of(unknown) = [(i, i=1, size(unknown))]
          allocate (half(size(written), size(written)), of_others(size(written), size(unknown)), &
             written_by(size(written), size(unknown)), source=0.0_dp)
          do q = 1, size(written)
@@ -265,22 +249,100 @@ contains
             written_by(q, column_of(by%value(by%start(i):by%start(i + 1) - 1))) = &
                by%coefficient(by%start(i):by%start(i + 1) - 1)
             do k = matrix%row_start(i), matrix%row_start(i + 1) - 1
-               j = matrix%column(k)
-               if (place(j) > 0) then
-                  half(q, place(j)) = 0.5_dp*matrix%value(k)
-                  cycle
-               end if
-               do term = by%start(j), by%start(j + 1) - 1
-                  associate (entry => of_others(q, column_of(by%value(term))))
-                     entry = entry + matrix%value(k)*by%coefficient(term)
-                  end associate
-               end do
+               associate (j => matrix%column(k))
+                  if (place(j) > 0) then
+                     half(q, place(j)) = 0.5_dp*matrix%value(k)
+                     cycle
+                  end if
+                  do term = by%start(j), by%start(j + 1) - 1
+                     associate (entry => of_others(q, column_of(by%value(term))))
+                        entry = entry + matrix%value(k)*by%coefficient(term)
+                     end associate
+                  end do
+               end associate
+            end do
+         end do
+         full = transposed_product(written_by, product_of(half, written_by) + of_others)
+         allocate (row(size(unknown)))
+         do i = 1, by%count
+            if (place(i) > 0 .or. .not. is_full(i)) cycle
+            row = 0.0_dp
+            do k = matrix%row_start(i), matrix%row_start(i + 1) - 1
+               associate (j => matrix%column(k))
+                  if (place(j) > 0 .or. .not. is_full(j)) cycle
+                  do term = by%start(j), by%start(j + 1) - 1
+                     associate (entry => row(column_of(by%value(term))))
+                        entry = entry + 0.5_dp*matrix%value(k)*by%coefficient(term)
+                     end associate
+                  end do
+               end associate
+            end do
+            do term = by%start(i), by%start(i + 1) - 1
+               call daxpy(size(row), by%coefficient(term), row, 1, &
+                  full(:, column_of(by%value(term))), 1)
             end do
          end do
       end associate
-      z = transposed_product(written_by, product_of(half, written_by) + of_others)
-      lower = with_full_part(self%transform(rest, stiffness), unknown, z)
+      lower = with_full_part(self%transform(outside(matrix, is_full), stiffness), unknown, full)
    end function transform_kept
+
+   !> The unknowns that written values of a matrix, and those joined to them, are made of, and the
+   !> degrees of freedom that are made of these alone.
+   pure subroutine find_full(self, matrix, is_full, unknown)
+      type(linear_constraints_type), intent(in) :: self
+      type(sparse_matrix_type), intent(in) :: matrix
+      logical, intent(out) :: is_full(:)              ! (dofs)
+      integer, allocatable, intent(out) :: unknown(:) ! ascending
+      logical :: is_joined(size(is_full)), is_part(self%equations)
+      integer :: i, k
+
+      is_joined = .false.
+      is_part = .false.
+      associate (by => self%by_unknowns, start => matrix%row_start)
+         do i = 1, size(is_full)
+            if (by%start(i + 1) - by%start(i) > 1) is_joined(matrix%column(start(i): &
+               start(i + 1) - 1)) = .true.
+         end do
+         do i = 1, size(is_full)
+            if (is_joined(i)) is_part(by%value(by%start(i):by%start(i + 1) - 1)) = .true.
+         end do
+         do i = 1, size(is_full)
+            is_full(i) = start(i + 1) > start(i)
+            if (.not. is_full(i)) cycle
+            do k = by%start(i), by%start(i + 1) - 1
+               is_full(i) = is_full(i) .and. is_part(by%value(k))
+            end do
+         end do
+      end associate
+      unknown = pack([(i, i=1, self%equations)], is_part)
+   end subroutine find_full
+
+   !> The entries of a matrix that are not in its full part.
+   pure function outside(matrix, is_full) result(rest)
+      type(sparse_matrix_type), intent(in) :: matrix
+      logical, intent(in) :: is_full(:)               ! (dofs) rows and columns of the full part
+      type(sparse_matrix_type) :: rest
+      integer :: i, k, n
+
+      rest%row_count = matrix%row_count
+      rest%column_count = matrix%column_count
+      allocate (rest%row_start, mold=matrix%row_start)
+      allocate (rest%column, mold=matrix%column)
+      allocate (rest%value, mold=matrix%value)
+      n = 0
+      do i = 1, matrix%row_count
+         rest%row_start(i) = n + 1
+         do k = matrix%row_start(i), matrix%row_start(i + 1) - 1
+            if (is_full(i) .and. is_full(matrix%column(k))) cycle
+            n = n + 1
+            rest%column(n) = matrix%column(k)
+            rest%value(n) = matrix%value(k)
+         end do
+      end do
+      rest%row_start(matrix%row_count + 1) = n + 1
+      rest%column = rest%column(:n)
+      rest%value = rest%value(:n)
+   end function outside
 
    !> The lower triangle of a matrix, with a full part and its transpose added.
    pure function with_full_part(lower, places, part) result(total)
@@ -519,7 +581,7 @@ contains
          plain = links
          do i = 1, dofs
             if (found%writer(i) == 0) then
-               call written%add([i], [1.0_dp])
+               call written%add_value(i)
             else
                call resolve(found, found%sums, found%writer(i), value, coefficient)
                call written%add(value, coefficient)

@@ -35,6 +35,14 @@ module mortar_points
       type(surface_chain_type), allocatable :: slaves(:), masters(:)
    end type other_chains_type
 
+   !> A sum of nodal values.
+   type :: nodal_sum_type
+      integer :: count = 0                  !! terms
+      integer, allocatable :: nodes(:)      !! their nodes, with room
+      real(dp), allocatable :: share(:)     !! their coefficients, likewise
+      integer, allocatable :: place(:)      !! (nodes) term of each, 0 for none
+   end type nodal_sum_type
+
 contains
 
    !> The contact points of two lines of nodes; none where no face of the master is opposite, or
@@ -204,25 +212,31 @@ contains
          integer, intent(in) :: signs(2)               ! of slave and master: 1, 0 or -1
          real(dp), intent(in) :: least                 ! coefficient that is not rounding
          type(sum_list_type) :: sums
-         integer, allocatable :: nodes(:)
-         real(dp), allocatable :: share(:)
+         type(nodal_sum_type) :: total
          integer :: c, i, k
 
+         associate (most => size(slave%nodes) + size(master%nodes))
+            allocate (total%nodes(most), total%share(most))
+         end associate
+         allocate (total%place(max(maxval(slave%nodes), maxval(master%nodes))), source=0)
          call sums%reserve(size(kept), size(kept)*2*(slave%side_nodes + master%side_nodes))
          do k = 1, size(kept)
             ! The corner's own node comes first.
-            nodes = points%slave(k:k)
-            share = [0.0_dp]
+            total%count = 0
+            call add_term(points%slave(k), 0.0_dp, total)
             do c = 1, size(owner)
                if (owner(c) /= kept(k)) cycle
                do i = 1, size(of_slave)
-                  call add_row(of_slave(i), c, slave%nodes, signs(1)*factor(i, k), nodes, share)
-                  call add_row(of_master(i), c, master%nodes, signs(2)*factor(i, k), nodes, share)
+                  call add_row(of_slave(i), c, slave%nodes, signs(1)*factor(i, k), total)
+                  call add_row(of_master(i), c, master%nodes, signs(2)*factor(i, k), total)
                end do
             end do
-            share = share/points%weight(k)
-            where (abs(share) <= least) share = 0.0_dp
-            call sums%add(nodes, share)
+            associate (nodes => total%nodes(:total%count), share => total%share(:total%count))
+               total%place(nodes) = 0
+               share = share/points%weight(k)
+               where (abs(share) <= least) share = 0.0_dp
+               call sums%add(nodes, share)
+            end associate
          end do
       end function means
    end subroutine set_means
@@ -255,24 +269,33 @@ contains
    end subroutine set_face_nodes
 
    !> Adds a multiple of a row of a matrix to a sum of nodal values.
-   pure subroutine add_row(matrix, row, node, factor, nodes, share)
+   pure subroutine add_row(matrix, row, node, factor, total)
       type(sparse_matrix_type), intent(in) :: matrix
       integer, intent(in) :: row, node(:)
       real(dp), intent(in) :: factor
-      integer, allocatable, intent(inout) :: nodes(:)
-      real(dp), allocatable, intent(inout) :: share(:)
-      integer :: i, k
+      type(nodal_sum_type), intent(inout) :: total
+      integer :: k
 
       do k = matrix%row_start(row), matrix%row_start(row + 1) - 1
-         i = findloc(nodes, node(matrix%column(k)), dim=1)
-         if (i == 0) then
-            nodes = [nodes, node(matrix%column(k))]
-            share = [share, 0.0_dp]
-            i = size(nodes)
-         end if
-         share(i) = share(i) + factor*matrix%value(k)
+         call add_term(node(matrix%column(k)), factor*matrix%value(k), total)
       end do
    end subroutine add_row
+
+   pure subroutine add_term(node, coefficient, total)
+      integer, intent(in) :: node
+      real(dp), intent(in) :: coefficient
+      type(nodal_sum_type), intent(inout) :: total
+
+      if (total%place(node) == 0) then
+         total%count = total%count + 1
+         total%place(node) = total%count
+         total%nodes(total%count) = node
+         total%share(total%count) = 0.0_dp
+      end if
+      associate (share => total%share(total%place(node)))
+         share = share + coefficient
+      end associate
+   end subroutine add_term
 
    !> Sums over the contact points that give each node of both faces its contact quantities: linear
    !> along each side of the slave, as the multipliers are; at a node of the master those of the

@@ -176,7 +176,7 @@ contains
       real(dp), intent(in) :: master_normal(:, :)  ! (2, nodes)
       real(dp), intent(in) :: section         ! thickness, 0 about an axis [length]
       type(segment_sums_type), intent(inout) :: sums
-      real(dp) :: area, ends(2), eta, factor(0:2), hat(2), normals(2, 2), radius, xi
+      real(dp) :: area, ends(2), eta, factor(0:2), hat(2), normals(2, 2), radius, weighted(2), xi
       real(dp) :: psi(size(side%nodes)), psi_master(master%side_nodes)
       real(dp) :: of_slave(2, size(psi), 0:2), of_master(2, size(psi_master), 0:2)
       integer :: facing(master%side_nodes), g, i, k
@@ -209,11 +209,12 @@ contains
          if (master%leads) normals(:, 1) = -normals(:, 2)
          factor = [1.0_dp, midway(normals(:, 1), normals(:, 2))]
          do k = 0, 2
+            weighted = factor(k)*area*hat
             do i = 1, size(psi)
-               of_slave(:, i, k) = of_slave(:, i, k) + factor(k)*area*hat*psi(i)
+               of_slave(:, i, k) = of_slave(:, i, k) + weighted*psi(i)
             end do
             do i = 1, size(psi_master)
-               of_master(:, i, k) = of_master(:, i, k) + factor(k)*area*hat*psi_master(i)
+               of_master(:, i, k) = of_master(:, i, k) + weighted*psi_master(i)
             end do
          end do
       end do

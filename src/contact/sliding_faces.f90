@@ -296,7 +296,9 @@ contains
       points%finest_gap = opposite%finest_gap
       call set_sums(points, opposite, place)
       if (.not. allocated(opposite%mortar%segments)) return
-      points%mortar%segments = opposite%mortar%segments
+      points%mortar = opposite%mortar
+      if (size(opposite%slave) == size(place) .and. all(number(1:) == [(k, k=1, size(number) - &
+         1)])) return
       do i = 1, size(points%mortar%segments)
          associate (ends => points%mortar%segments(i)%points)
             ends = number(ends)

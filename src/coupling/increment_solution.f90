@@ -33,7 +33,8 @@ module increment_solution
    private
    public :: begin_increment, carry_to_faces, fill_bodies, load_points, solve_points, recover_fields
 
-   integer, parameter :: of_heat = 1, of_mechanics = 2   !! places of known loads
+   !> Places of known loads: those of the unknowns, and those inside of the pieces of bodies.
+   integer, parameter :: of_heat = 1, of_mechanics = 2, inside_heat = 3, inside_mechanics = 4
 
 contains
 
@@ -49,7 +50,7 @@ contains
       type(trial_type), intent(inout) :: trial
       type(error_type), allocatable, intent(out) :: error
 
-      if (.not. allocated(trial%known)) allocate (trial%known(2))
+      if (.not. allocated(trial%known)) allocate (trial%known(4))
       associate (data => trial%data, workspace => trial%workspace, next => trial%next)
          next%edge = data%edge
          next%keeps_imbalance = solves_heat(data%analysis) .and. data%equation%never_damps()
@@ -89,7 +90,7 @@ contains
       call load_heat(bodies, heat, loads, trial, error)
       if (allocated(error)) return
       trial%workspace%friction = trial%data%friction
-      call load_mechanics(bodies, loads, trial, error)
+      call load_mechanics(bodies, heat, loads, trial, error)
    end subroutine load_points
 
    !> Heat load of an increment, condensed, and the temperatures that belong to welded contacts.
@@ -100,11 +101,16 @@ contains
       type(loads_type), intent(in) :: loads
       type(trial_type), intent(inout) :: trial
       type(error_type), allocatable, intent(out) :: error
+      real(dp), allocatable :: inside(:), left(:), sources(:)
 
+      sources = history_of_heat(bodies, trial%data)
       associate (data => trial%data, temperature => trial%next%temperature, &
          given => loads%temperature%value)
-         data%heat = heat%load_of(bodies%thermal, history_of_heat(bodies, data), given)
-         call heat%condense_load(bodies%thermal, data%heat, trial%known(of_heat), temperature)
+         if (only_places(bodies, heat, trial)) call heat%condense_inside(bodies%thermal, sources, &
+            given, trial%known(inside_heat), left, inside)
+         data%heat = heat%load_of(bodies%thermal, sources, given, left)
+         call heat%condense_load(bodies%thermal, data%heat, trial%known(of_heat), temperature, &
+            inside)
          data%held_jump = bodies%points%jumps(given)
          where (bodies%jump_index > 0) data%held_jump = 0.0_dp
          if (bodies%points%vary_with_temperature()) data%welded_mean = &
@@ -142,7 +148,7 @@ contains
             where (abs(jump - bodies%points%jumps(data%equation%temperature_old)) > 0.0_dp) &
                next%jump = jump
          end if
-         call load_mechanics(bodies, loads, trial, error)
+         call load_mechanics(bodies, heat, loads, trial, error)
          if (allocated(error)) return
          if (.not. bodies%is_coupled) then
             call solve_mechanics(bodies, data, workspace, next, error)
@@ -373,23 +379,37 @@ contains
    !> Mechanical load of the increment, with the temperatures of welded contacts or those that stay;
    !> and what it makes on the contact without jumps.
    !> Error: it overflows.
-   subroutine load_mechanics(bodies, loads, trial, error)
+   subroutine load_mechanics(bodies, heat, loads, trial, error)
       type(reduced_bodies_type), intent(in) :: bodies
+      type(heat_reduction_type), intent(in) :: heat
       type(loads_type), intent(in) :: loads
       type(trial_type), intent(inout) :: trial
       type(error_type), allocatable, intent(out) :: error
-      real(dp) :: thermal(2*size(trial%next%temperature))
+      real(dp), dimension(2*size(trial%next%temperature)) :: kept, thermal
       real(dp), dimension(bodies%rigid%count) :: along, sums   ! resultants, and without signs
+      real(dp), allocatable :: left(:)
       type(overlap_law_type), allocatable :: overlap(:)
       type(sum_list_type) :: sizes
 
       trial%next%contact%reference = trial%data%previous%tangential
-      thermal = unstrained_forces(bodies, trial%next%temperature - loads%temperature%rest, &
-         trial%next%forces_beyond)
       associate (applied => trial%next%force_load, force => trial%data%force, &
+         temperature => trial%next%temperature, given => loads%displacement%value, &
          work => trial%workspace%contact, contact => bodies%equilibrium%contact)
-         force = bodies%equilibrium%load_of(bodies%mechanical, applied + thermal, &
-            loads%displacement%value)
+         kept = 0.0_dp
+         if (only_places(bodies, heat, trial)) then
+            ! Only what pieces keep of the temperatures depends on where faces are.
+            thermal = unstrained_forces(bodies, merge(0.0_dp, temperature, &
+               bodies%thermal%division%piece == 0) - loads%temperature%rest, &
+               trial%next%forces_beyond)
+            call bodies%equilibrium%condense_inside(bodies%mechanical, applied + thermal, given, &
+               trial%known(inside_mechanics), left)
+            kept = heat%kept_forces(temperature)
+            left = left + kept
+         else
+            thermal = unstrained_forces(bodies, temperature - loads%temperature%rest, &
+               trial%next%forces_beyond)
+         end if
+         force = bodies%equilibrium%load_of(bodies%mechanical, applied + thermal, given, left)
          call bodies%equilibrium%condense_load(bodies%mechanical, force, &
             trial%known(of_mechanics))
          ! A solution with other corrections has the factors of the one before.
@@ -404,7 +424,7 @@ contains
             if (allocated(trial%data%closing_start)) work%closing = trial%data%closing_start
             work%same_slip = trial%data%same_slip
          end if
-         work%load_scale = max(maxval(abs(applied)), maxval(abs(thermal)))
+         work%load_scale = max(maxval(abs(applied)), maxval(abs(thermal)), maxval(abs(kept)))
          along = 0.0_dp
          call bodies%rigid%add_totals(applied, along)
          sums = 0.0_dp
@@ -434,7 +454,7 @@ contains
          if (.not. solves_mechanics(data%analysis)) return
          if (only_places(bodies, heat, trial)) then
             data%force%rhs(:, 1) = data%force%rhs(:, 1) + bodies%mechanical%map%restrict( &
-               heat%tail_forces(bodies, workspace%on_tail))
+               heat%kept_forces(kept_jumps(bodies, heat, workspace%on_tail)))
          else if (bodies%is_coupled) then
             call complete_temperatures(bodies, heat, loads, trial)
          end if
@@ -493,13 +513,35 @@ contains
       type(heat_reduction_type), intent(in) :: heat
       type(loads_type), intent(in) :: loads            !! loads at the end
       type(trial_type), intent(inout) :: trial         !! as recover_fields left it
+      real(dp) :: inside(size(trial%next%temperature))
 
       if (trial%data%is_corrected) return
-      if (only_places(bodies, heat, trial)) call complete_temperatures(bodies, heat, loads, trial)
-      trial%next%stress_temperature = trial%next%temperature
-      if (allocated(trial%data%force%forces)) call bodies%equilibrium%pieces%fill( &
-         trial%next%displacement, trial%data%force%forces)
+      associate (next => trial%next, force => trial%data%force)
+         if (only_places(bodies, heat, trial)) then
+            inside = merge(next%temperature, 0.0_dp, bodies%thermal%division%piece > 0)
+            next%temperature = next%temperature + kept_jumps(bodies, heat, trial%workspace%on_tail)
+            call heat%pieces%fill(next%temperature)
+            next%temperature = next%temperature + inside
+            force%forces = bodies%equilibrium%forces_inside(bodies%mechanical, next%force_load + &
+               unstrained_forces(bodies, next%temperature - loads%temperature%rest, &
+               next%forces_beyond), loads%displacement%value)
+         end if
+         next%stress_temperature = next%temperature
+         if (allocated(force%forces)) call bodies%equilibrium%pieces%fill(next%displacement, &
+            force%forces)
+      end associate
    end subroutine fill_bodies
+
+   !> What the jumps make of the temperatures that pieces keep.
+   function kept_jumps(bodies, heat, on_tail) result(temperature)
+      type(reduced_bodies_type), intent(in) :: bodies
+      type(heat_reduction_type), intent(in) :: heat
+      real(dp), intent(in) :: on_tail(:)               ! (thermal tail)
+      real(dp) :: temperature(bodies%thermal%matrix%row_count)   ! (nodes) [temperature]
+
+      temperature = reshape(heat%extended_to_kept(bodies%thermal, reshape(on_tail, &
+         [size(on_tail), 1])), shape(temperature))
+   end function kept_jumps
 
    !> Adds what the jumps make of the temperatures of welded contacts.
    subroutine add_jumps(bodies, heat, on_tail, temperature)

@@ -14,6 +14,7 @@ module sum_lists
    contains
       procedure :: reserve
       procedure :: add
+      procedure :: add_value
       procedure :: add_sums
       procedure :: renumbered
       procedure :: transposed
@@ -48,7 +49,7 @@ contains
 
       call list%reserve(size(values), size(values))
       do i = 1, size(values)
-         call list%add(values(i:i), [1.0_dp])
+         call list%add_value(values(i))
       end do
    end function single_values
 
@@ -98,6 +99,24 @@ contains
       self%count = self%count + 1
       self%start(self%count + 1) = term
    end subroutine add
+
+   !> Adds a value as it is.
+   pure subroutine add_value(self, value)
+      class(sum_list_type), intent(inout) :: self
+      integer, intent(in) :: value
+
+      integer :: term
+
+      term = self%start(self%count + 1)
+      if (self%count + 2 > size(self%start) .or. term > size(self%value)) then
+         call self%add([value], [1.0_dp])
+         return
+      end if
+      self%value(term) = value
+      self%coefficient(term) = 1.0_dp
+      self%count = self%count + 1
+      self%start(self%count + 1) = term + 1
+   end subroutine add_value
 
    !> Adds the sums of another list.
    pure subroutine add_sums(self, sums)
