@@ -4,7 +4,7 @@ module interface_quantities
    use contact_points, only: contact_points_type, on_axis
    use contact_quantities, only: contact_values, estimated
    use contact_system, only: contact_open
-   use increment_records, only: measure_contact
+   use increment_records, only: measure_contact, overlaps
    use heat_equation, only: heat_across
    use kinds, only: dp
    use quantity_types, only: quantity_type
@@ -47,7 +47,8 @@ contains
             contacts(i)%gap = contact%gap(first:last)
             call measure_contact(points, bodies%laws%friction(first), &
                contacts(i)%contact_state /= contact_open, contact%force(first:last), &
-               contact%shear_force(first:last), contacts(i))
+               contact%shear_force(first:last), overlaps(bodies, contact%force, first, last), &
+               contacts(i))
             contacts(i)%heat_rate = sum(heat_across(points%weight, &
                state%flux_conductance(first:last), state%jump(first:last)))
          end do

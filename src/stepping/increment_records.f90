@@ -37,7 +37,7 @@ module increment_records
       stick_edges
    implicit none
    private
-   public :: complete_record, measure_contact, note_edges
+   public :: complete_record, measure_contact, note_edges, overlaps
 
    !> Part of the contact forces that their solution loses by rounding: the spacing of numbers times
    !> the condition of the contact system, some 1e4. A sum of shear forces below it is none.
@@ -221,7 +221,8 @@ contains
             record%gap = 0.0_dp
          end where
          call measure_contact(points, bodies%laws%friction(first), closed, &
-            contact%force(first:last), contact%shear_force(first:last), record)
+            contact%force(first:last), contact%shear_force(first:last), overlaps(bodies, &
+            contact%force, first, last), record)
          record%movement = contact%tangential(first:last)
          record%slip = record%movement - contact%slip_origin(first:last)
       end associate
@@ -297,13 +298,28 @@ contains
       if (n > 0 .and. .not. any(pressure(beside) > 0.0_dp)) resting_beside = beside(n)
    end function resting_beside
 
+   !> How far the faces of an interface would overlap if they yielded at each contact point alone.
+   pure function overlaps(bodies, force, first, last) result(overlap)
+      type(reduced_bodies_type), intent(in) :: bodies
+      real(dp), intent(in) :: force(:)                     !! (m) of all interfaces
+      integer, intent(in) :: first, last                   !! contact points of the interface
+      real(dp) :: overlap(first:last)                      !! [length]
+
+      overlap = 0.0_dp
+      associate (contact => bodies%equilibrium%contact)
+         if (.not. allocated(contact%alone)) return
+         where (force(first:last) > 0.0_dp) overlap = force(first:last)/contact%alone(first:last)
+      end associate
+   end function overlaps
+
    !> Tractions, sums and edges of an interface from its nodal forces.
-   pure subroutine measure_contact(points, friction, closed, force, shear_force, record)
+   pure subroutine measure_contact(points, friction, closed, force, shear_force, overlap, record)
       type(contact_points_type), intent(in) :: points      !! the contact points of the interface
       type(friction_law_type), intent(in) :: friction      !! the law of all of them
       logical, intent(in) :: closed(:)                    !! (m) contact points that have a traction
       real(dp), intent(in) :: force(:)                     !! (m) 0 at the others [force]
       real(dp), intent(in) :: shear_force(:)               !! (m) on the slave [force]
+      real(dp), intent(in) :: overlap(:)                   !! (m) of contact points alone [length]
       type(contact_record_type), intent(inout) :: record   !! has states and gaps
       type(contact_profile_type) :: profile
 
@@ -315,7 +331,7 @@ contains
          record%shear_force = 0.0_dp
       end if
       profile = contact_profile(points, record%contact_state, record%pressure, record%shear, &
-         record%gap)
+         record%gap - overlap)
       call contact_edges(profile, record%edges_contact, record%edge_contact)
       call stick_edges(profile, friction, record%edges_stick, record%edge_stick)
    end subroutine measure_contact
