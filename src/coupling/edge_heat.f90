@@ -55,9 +55,6 @@ module edge_heat
       type(edge_profile_type), allocatable :: along
    end type side_edge_type
 
-   !> A conductance that is the pressure.
-   type(conductance_law_type), parameter :: of_pressure = conductance_law_type( &
-      closed_kind=law_power, power_c1=1.0_dp)
    real(dp), parameter :: least_length = 1.0e-6_dp   !! of a closed part that has a profile [t]
    integer, parameter :: farthest = 4   !! contact points from an end of a side that its edge reads
    !> Difference of openings for derivatives, as a part of those beside them: half of the digits.
@@ -279,10 +276,13 @@ contains
       type(hat_geometry_type), intent(in) :: mortar
       integer, intent(in) :: point
       type(side_edge_type), intent(inout) :: edges(:)    ! (sides)
+      type(conductance_law_type) :: law                 ! by which the conductance is the pressure
       type(edge_profile_type) :: course
-      real(dp) :: carried, force, weights(support, 2)   ! of a pressure of 1 at the contact point
+      real(dp) :: carried, force, weights(support, 2)   ! carried: by 1 at the contact point
       integer :: i, side
 
+      law%closed_kind = law_power
+      law%power_c1 = 1.0_dp
       carried = 0.0_dp
       force = 0.0_dp
       do i = 1, size(mortar%hats(point)%segment)
@@ -294,7 +294,7 @@ contains
             weights = segment%hat_weights()
             force = force + dot_product(segment%area, weights(:, end))
             course = edges(side)%along
-            course%law = of_pressure
+            course%law = law
             course%pressure = 1.0_dp
             weights = segment%hat_weights(course)
             carried = carried + dot_product(segment%area, weights(:, 1) + weights(:, 2))
