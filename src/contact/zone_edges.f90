@@ -50,8 +50,8 @@ module zone_edges
       integer, allocatable :: contact_state(:) !! (m) contact states
       real(dp), allocatable :: pressure(:)   !! (m) [stress]
       real(dp), allocatable :: shear(:)      !! (m) [stress]
-      !> (m) gap; where closed, minus the overlap that the force presses out at that point alone
-      !> [length]
+      !> (m) gap; where closed, minus the overlap that the force presses out if its nodes yield
+      !> alone [length]
       real(dp), allocatable :: gap(:)
       !> node spacings from a contact point to the next, where gaps are means with hat functions; 0
       !> for node pairs

@@ -92,7 +92,8 @@ contains
             call bodies%view(i, points)
             call integrate_hats(bodies%points%mortar(i), edges_of(points, &
                bodies%laws%conductance(first), opening(first:last), modulus(first:last), &
-               bodies%points%mortar(i)), is_beside(first:last), &
+               bodies%equilibrium%contact%at_nodes(first:last), bodies%points%mortar(i)), &
+               is_beside(first:last), &
                beside(found + 1:found + count(is_beside(first:last))))
             associate (new => beside(found + 1:found + count(is_beside(first:last))))
                new%is_open = opening(first - 1 + new%point) > 0.0_dp
@@ -246,10 +247,11 @@ contains
    end subroutine find_heat_by_opening
 
    !> The conductances along the sides with an edge, each between a contact point and the next.
-   pure function edges_of(points, law, opening, modulus, mortar) result(edges)
+   pure function edges_of(points, law, opening, modulus, stiffness, mortar) result(edges)
       type(contact_points_type), intent(in) :: points
       type(conductance_law_type), intent(in) :: law
       real(dp), intent(in) :: opening(:), modulus(:)  ! (m)
+      real(dp), intent(in) :: stiffness(:)            ! (m) at the nodes [force/length]
       type(hat_geometry_type), intent(in) :: mortar
       type(side_edge_type) :: edges(size(opening) - 1)   ! (sides)
       type(contact_profile_type) :: piece, profile
@@ -257,7 +259,8 @@ contains
       integer :: i, k
 
       profile = contact_profile(points, merge(contact_open, contact_slip, opening > 0.0_dp), &
-         max(-opening, 0.0_dp)*modulus, 0.0_dp*opening, opening)
+         max(-opening, 0.0_dp)*modulus, 0.0_dp*opening, merge(opening, opening*modulus* &
+         points%weight/max(stiffness, tiny(1.0_dp)), opening > 0.0_dp))
       ends = points%ends()
       do i = 1, size(ends), 2
          piece = piece_of(profile, ends(i), ends(i + 1))

@@ -298,7 +298,7 @@ contains
       if (n > 0 .and. .not. any(pressure(beside) > 0.0_dp)) resting_beside = beside(n)
    end function resting_beside
 
-   !> How far the faces of an interface would overlap if they yielded at each contact point alone.
+   !> How far the faces of an interface would overlap if their nodes yielded alone.
    pure function overlaps(bodies, force, first, last) result(overlap)
       type(reduced_bodies_type), intent(in) :: bodies
       real(dp), intent(in) :: force(:)                     !! (m) of all interfaces
@@ -307,8 +307,9 @@ contains
 
       overlap = 0.0_dp
       associate (contact => bodies%equilibrium%contact)
-         if (.not. allocated(contact%alone)) return
-         where (force(first:last) > 0.0_dp) overlap = force(first:last)/contact%alone(first:last)
+         if (.not. allocated(contact%at_nodes)) return
+         where (force(first:last) > 0.0_dp .and. contact%at_nodes(first:last) > 0.0_dp) overlap = &
+            force(first:last)/contact%at_nodes(first:last)
       end associate
    end function overlaps
 
@@ -319,7 +320,7 @@ contains
       logical, intent(in) :: closed(:)                    !! (m) contact points that have a traction
       real(dp), intent(in) :: force(:)                     !! (m) 0 at the others [force]
       real(dp), intent(in) :: shear_force(:)               !! (m) on the slave [force]
-      real(dp), intent(in) :: overlap(:)                   !! (m) of contact points alone [length]
+      real(dp), intent(in) :: overlap(:)                   !! (m) of nodes that yield alone [length]
       type(contact_record_type), intent(inout) :: record   !! has states and gaps
       type(contact_profile_type) :: profile
 
