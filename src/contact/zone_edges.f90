@@ -9,6 +9,12 @@
 !> apart as two node pairs, count only near the edge. Their gap is a mean with a hat; their distance
 !> d from a trial edge a is that for which d^(3/2) is the mean of (x - a)^(3/2).
 !>
+!> At a ridge the gap opens at an angle, gap^(2/3) vanishes before the contact point, and what
+!> carries the force may be far narrower than a side. Its width goes like force/(stiffness angle),
+!> and so does the zero of a straight line from the overlap that the force of a mortar point presses
+!> out to the next gap. Where none beside that point is closed, the edge is no nearer than this
+!> zero.
+!>
 !> Edge of stick: the zero of mu p - |tau|, which is p_tau = mu p_n. Behind a front that advances
 !> with the load it has no root singularity on the nodal scale, but the slip that was frozen at each
 !> contact point when the next one closed makes it noisy; so a straight line is fitted to the last
@@ -27,8 +33,8 @@ module zone_edges
    use kinds, only: dp
    implicit none
    private
-   public :: contact_profile_type, contact_profile, contact_edges, contact_end, mean_beyond
-   public :: edges_kept, piece_of, stick_edges, turned
+   public :: contact_profile_type, contact_profile, contact_edges, carries_alone, contact_end
+   public :: edges_kept, mean_beyond, piece_of, stick_edges, turned
 
    integer, parameter :: edges_kept = 4     !! zone edges kept for an interface
 
@@ -44,7 +50,9 @@ module zone_edges
       integer, allocatable :: contact_state(:) !! (m) contact states
       real(dp), allocatable :: pressure(:)   !! (m) [stress]
       real(dp), allocatable :: shear(:)      !! (m) [stress]
-      real(dp), allocatable :: gap(:)        !! (m) [length]
+      !> (m) gap; where closed, minus the overlap that the force presses out if its nodes yield
+      !> alone [length]
+      real(dp), allocatable :: gap(:)
       !> node spacings from a contact point to the next, where gaps are means with hat functions; 0
       !> for node pairs
       integer :: hat_spacings = 0
@@ -61,7 +69,7 @@ contains
       integer, intent(in) :: contact_state(:)   !! (m)
       real(dp), intent(in) :: pressure(:)       !! (m) [stress]
       real(dp), intent(in) :: shear(:)          !! (m) [stress]
-      real(dp), intent(in) :: gap(:)            !! (m) [length]
+      real(dp), intent(in) :: gap(:)            !! (m) where closed minus the overlap [length]
       type(contact_profile_type) :: profile
 
       profile%s = points%arc_length
@@ -159,9 +167,12 @@ contains
       integer, intent(in) :: k
       real(dp) :: edge
       integer :: first, last
-      logical :: is_near
+      logical :: carries, is_near
 
+      edge = profile%s(k)
+      carries = carries_alone(profile, k)
       associate (s => profile%s, gap => profile%gap)
+         if (carries) edge = s(k) + (s(k + 1) - s(k))*gap(k)/(gap(k) - gap(k + 1))
          last = k + count_open(profile%contact_state(k + 1:min(k + 4, size(gap))))
          do while (last > k + 1)
             first = max(k + 1, last - 2)
@@ -169,14 +180,25 @@ contains
                reach_of_hats*(s(k + 1) - s(k))
             if (is_near .and. gap(first) > 0.0_dp .and. all(gap(first:last - 1) < &
                gap(first + 1:last))) then
-               edge = end_of_gap(profile, k, first, last)
+               edge = max(edge, end_of_gap(profile, k, first, last))
                return
             end if
             last = last - 1
          end do
       end associate
-      edge = end_of_pressure(profile, k)
+      if (.not. carries) edge = end_of_pressure(profile, k)
    end function contact_end
+
+   !> Whether a closed mortar point carries a force that none beside it shares.
+   pure logical function carries_alone(profile, k)
+      type(contact_profile_type), intent(in) :: profile
+      integer, intent(in) :: k
+
+      associate (states => profile%contact_state)
+         carries_alone = profile%hat_spacings > 0 .and. profile%gap(k) < 0.0_dp .and. &
+            count(states(max(k - 1, 1):min(k + 1, size(states))) /= contact_open) == 1
+      end associate
+   end function carries_alone
 
    !> Number of open contact points before the first closed one.
    pure integer function count_open(contact_state) result(number)

@@ -9,10 +9,11 @@
 !>    weight omega_c J_c = integral of phi_c omega J(x) dA,
 !>
 !> so that the heat enters the bodies where it crosses, by the same sum. On the other side of a
-!> point omega is that of the point itself.
+!> point omega is that of the point itself. A closed point between edges alone has no other side:
+!> the pressure along both has its force as the integral, however narrow the contact is.
 module edge_heat
    use conductance_graph, only: conductance_graph_type
-   use conductance_laws, only: conductance_law_type
+   use conductance_laws, only: conductance_law_type, law_power
    use contact_points, only: contact_points_type
    use contact_system, only: contact_open, contact_slip
    use heat_equation, only: heat_across, heat_rates_type
@@ -20,8 +21,8 @@ module edge_heat
    use kinds, only: dp
    use reduced_bodies, only: reduced_bodies_type
    use sum_lists, only: sum_list_type
-   use zone_edges, only: contact_end, contact_profile, contact_profile_type, mean_beyond, &
-      piece_of, turned
+   use zone_edges, only: carries_alone, contact_end, contact_profile, contact_profile_type, &
+      mean_beyond, piece_of, turned
    implicit none
    private
    public :: edge_integral_type, edge_heat_type, find_edge_integrals, edge_heat_at
@@ -90,8 +91,10 @@ contains
             if (.not. any(is_beside(first:last))) cycle
             call bodies%view(i, points)
             call integrate_hats(bodies%points%mortar(i), edges_of(points, &
-               bodies%laws%conductance(first), opening(first:last), modulus(first:last)), &
-               is_beside(first:last), beside(found + 1:found + count(is_beside(first:last))))
+               bodies%laws%conductance(first), opening(first:last), modulus(first:last), &
+               bodies%equilibrium%contact%at_nodes(first:last), bodies%points%mortar(i)), &
+               is_beside(first:last), &
+               beside(found + 1:found + count(is_beside(first:last))))
             associate (new => beside(found + 1:found + count(is_beside(first:last))))
                new%is_open = opening(first - 1 + new%point) > 0.0_dp
                new%point = first - 1 + new%point
@@ -244,25 +247,67 @@ contains
    end subroutine find_heat_by_opening
 
    !> The conductances along the sides with an edge, each between a contact point and the next.
-   pure function edges_of(points, law, opening, modulus) result(edges)
+   pure function edges_of(points, law, opening, modulus, stiffness, mortar) result(edges)
       type(contact_points_type), intent(in) :: points
       type(conductance_law_type), intent(in) :: law
       real(dp), intent(in) :: opening(:), modulus(:)  ! (m)
+      real(dp), intent(in) :: stiffness(:)            ! (m) at the nodes [force/length]
+      type(hat_geometry_type), intent(in) :: mortar
       type(side_edge_type) :: edges(size(opening) - 1)   ! (sides)
-      type(contact_profile_type) :: profile
+      type(contact_profile_type) :: piece, profile
       integer, allocatable :: ends(:)
       integer :: i, k
 
       profile = contact_profile(points, merge(contact_open, contact_slip, opening > 0.0_dp), &
-         max(-opening, 0.0_dp)*modulus, 0.0_dp*opening, max(opening, 0.0_dp))
+         max(-opening, 0.0_dp)*modulus, 0.0_dp*opening, merge(opening, opening*modulus* &
+         points%weight/max(stiffness, tiny(1.0_dp)), opening > 0.0_dp))
       ends = points%ends()
       do i = 1, size(ends), 2
+         piece = piece_of(profile, ends(i), ends(i + 1))
          do k = ends(i), ends(i + 1) - 1
             if (count(profile%contact_state(k:k + 1) == contact_open) == 1) edges(k)%along = &
-               edge_between(law, piece_of(profile, ends(i), ends(i + 1)), k + 1 - ends(i))
+               edge_between(law, piece, k + 1 - ends(i))
+         end do
+         do k = ends(i), ends(i + 1)
+            if (carries_alone(piece, k + 1 - ends(i))) call carry_force(mortar, k, edges)
          end do
       end do
    end function edges_of
+
+   !> Gives the profiles beside a lone closed contact point a pressure whose integral is its force.
+   pure subroutine carry_force(mortar, point, edges)
+      type(hat_geometry_type), intent(in) :: mortar
+      integer, intent(in) :: point
+      type(side_edge_type), intent(inout) :: edges(:)    ! (sides)
+      type(conductance_law_type) :: law                 ! by which the conductance is the pressure
+      type(edge_profile_type) :: course
+      real(dp) :: carried, force, weights(support, 2)   ! carried: by 1 at the contact point
+      integer :: i, side
+
+      law%closed_kind = law_power
+      law%power_c1 = 1.0_dp
+      carried = 0.0_dp
+      force = 0.0_dp
+      do i = 1, size(mortar%hats(point)%segment)
+         associate (segment => mortar%segments(mortar%hats(point)%segment(i)), &
+            end => mortar%hats(point)%end(i))
+            side = segment%side()
+            if (side == 0) cycle
+            if (.not. allocated(edges(side)%along)) cycle
+            weights = segment%hat_weights()
+            force = force + dot_product(segment%area, weights(:, end))
+            course = edges(side)%along
+            course%law = law
+            course%pressure = 1.0_dp
+            weights = segment%hat_weights(course)
+            carried = carried + dot_product(segment%area, weights(:, 1) + weights(:, 2))
+         end associate
+      end do
+      do side = max(point - 1, 1), min(point, size(edges))
+         if (allocated(edges(side)%along)) edges(side)%along%pressure = &
+            edges(side)%along%pressure*force/carried
+      end do
+   end subroutine carry_force
 
    !> Whether temperatures of nodes follow from the unknowns of the tail alone.
    pure logical function on_tail(bodies, nodes)

@@ -221,7 +221,8 @@ contains
             record%gap = 0.0_dp
          end where
          call measure_contact(points, bodies%laws%friction(first), closed, &
-            contact%force(first:last), contact%shear_force(first:last), record)
+            contact%force(first:last), contact%shear_force(first:last), overlaps(bodies, &
+            contact%force, first, last), record)
          record%movement = contact%tangential(first:last)
          record%slip = record%movement - contact%slip_origin(first:last)
       end associate
@@ -315,20 +316,37 @@ contains
             contacts(i)%gap = contact%gap(first:last)
             call measure_contact(points, bodies%laws%friction(first), &
                contacts(i)%contact_state /= contact_open, contact%force(first:last), &
-               contact%shear_force(first:last), contacts(i))
+               contact%shear_force(first:last), overlaps(bodies, contact%force, first, last), &
+               contacts(i))
             contacts(i)%heat_rate = sum(heat_across(points%weight, &
                state%flux_conductance(first:last), state%jump(first:last)))
          end do
       end associate
    end subroutine contacts_of_state
 
+   !> How far the faces of an interface would overlap if their nodes yielded alone.
+   pure function overlaps(bodies, force, first, last) result(overlap)
+      type(reduced_bodies_type), intent(in) :: bodies
+      real(dp), intent(in) :: force(:)                     ! (m) of all interfaces
+      integer, intent(in) :: first, last                   ! contact points of the interface
+      real(dp) :: overlap(first:last)                      ! [length]
+
+      overlap = 0.0_dp
+      associate (contact => bodies%equilibrium%contact)
+         if (.not. allocated(contact%at_nodes)) return
+         where (force(first:last) > 0.0_dp .and. contact%at_nodes(first:last) > 0.0_dp) overlap = &
+            force(first:last)/contact%at_nodes(first:last)
+      end associate
+   end function overlaps
+
    !> Tractions, sums and edges of an interface from its nodal forces.
-   pure subroutine measure_contact(points, friction, closed, force, shear_force, record)
+   pure subroutine measure_contact(points, friction, closed, force, shear_force, overlap, record)
       type(contact_points_type), intent(in) :: points      ! the contact points of the interface
       type(friction_law_type), intent(in) :: friction      ! the law of all of them
       logical, intent(in) :: closed(:)                    ! (m) contact points that have a traction
       real(dp), intent(in) :: force(:)                     ! (m) 0 at the others [force]
       real(dp), intent(in) :: shear_force(:)               ! (m) on the slave [force]
+      real(dp), intent(in) :: overlap(:)                   ! (m) of nodes that yield alone [length]
       type(contact_record_type), intent(inout) :: record   ! has states and gaps
       type(contact_profile_type) :: profile
 
@@ -340,7 +358,7 @@ contains
          record%shear_force = 0.0_dp
       end if
       profile = contact_profile(points, record%contact_state, record%pressure, record%shear, &
-         record%gap)
+         record%gap - overlap)
       call contact_edges(profile, record%edges_contact, record%edge_contact)
       call stick_edges(profile, friction, record%edges_stick, record%edge_stick)
    end subroutine measure_contact

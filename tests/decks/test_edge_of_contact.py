@@ -146,3 +146,46 @@ def test_heat_and_gain_are_the_same_at_either_side_of_a_face(tmp_path):
     both, both_gain = joined(tmp_path / "both.inp", ("R", 1, 1), ("L", 5001, -1))
     np.testing.assert_allclose([mirrored, *both], heat, rtol=1e-9)
     np.testing.assert_allclose([mirrored_gain, both_gain], gain, rtol=1e-6)
+
+
+def ridge(path, law, slopes, pairing, grid):
+    """Press a ridge, from which a face rises to one end or to both, on a flat face; return the
+    contact. Each body has one temperature. The grid has the ends of elements from the ridge on."""
+    xs, ys, out = (np.append(-part[:0:-1], part) if mirrored else part for part, mirrored in
+                   ((grid, slopes == 2), (grid[grid <= 2], False), (grid[grid <= 1], True)))
+    out = np.append(out[out < 0], xs) if slopes == 1 else xs
+    first = 10001 + (len(out) - 1) * (len(ys) - 2)
+    result = solve(write(path, [
+        "*OPTIONS, ERRORS=NO",
+        *mesh("UP", xs, ys, "CPE4", to=lambda x, y: (x, y + 5e-3 * abs(x) * (1 - y / 2))),
+        *mesh("LOW", out, -ys[::-1], "CPE4", first=10001),
+        *material("UP", (1e5, 0.3), None, 1e6), *material("LOW", (1e5, 0.3), None, 1e6),
+        "*NODE, NSET=HAND", "9999, 0., 3.",
+        "*COUPLING, REF NODE=HAND, SURFACE=UP.TOP, CONSTRAINT NAME=GRIP", "*KINEMATIC", "1, 2",
+        "*SURFACE, NAME=FLAT",
+        *[f"{first + i}, S3" for i in range(len(out) - len(xs), len(out) - 1)],
+        "*SURFACE INTERACTION, NAME=FACES", "*GAP LAW, TYPE=GAS", "3e-4, 5e-3", *law,
+        f"*CONTACT PAIR, INTERACTION=FACES, NAME=RIDGE, PAIRING={pairing}", "UP.BOTTOM, FLAT",
+        "*INITIAL CONDITIONS, TYPE=TEMPERATURE", "UP, 0.", "LOW, 0.", "*STEP",
+        "*COUPLED TEMPERATURE-DISPLACEMENT, STEADY STATE, DIRECT", "1., 1.", "*BOUNDARY",
+        "HAND, 1", "HAND, 6", "LOW.BOTTOM, 1, 2", "UP.TOP, 11, 11, 100.", "LOW.BOTTOM, 11, 11, 0.",
+        "*CLOAD", f"HAND, 2, {-25.0 * slopes}", "*END STEP"]))
+    with h5py.File(result) as file:
+        contact = file["contact/RIDGE"]
+        edges = contact["edges_contact"][-1]
+        return (contact["heat_rate"][-1], np.count_nonzero(contact["status"][-1]),
+                edges[0] if slopes == 1 else edges[1] - edges[0])
+
+
+@pytest.mark.parametrize("slopes", [1, 2], ids=["at an end of the face", "inside the face"])
+@pytest.mark.parametrize("law", [["*GAP LAW, TYPE=POWER", "0.06, 0.002, 1."],
+                                 ["*GAP CONDUCTANCE, PRESSURE", "0.06, 0.", "0.46, 200."]],
+                         ids=["linear", "table that ends"])
+def test_a_ridge_on_one_contact_point_conducts_as_on_a_mesh_that_resolves_it(tmp_path, law, slopes):
+    fine, closed, width = ridge(tmp_path / "fine.inp", law, slopes, "NODES",
+                                np.append(0.0, 2.0**np.arange(-10, 2.5, 0.5)))
+    assert closed > 12
+    heat, closed, zone = ridge(tmp_path / "coarse.inp", law, slopes, "SURFACES", np.linspace(0, 4, 9))
+    assert closed == 1
+    assert abs(heat / fine - 1) < 0.03
+    assert 0.5 < zone / width < 1.5
