@@ -12,6 +12,7 @@ import pytest
 from deck_runs import INPUT, PATIENCE, data_cards, run
 from physics import DECKS  # noqa: F401  puts tests/reference on the path
 from scipy.optimize import brentq
+from test_companion_runs import assert_equal_numbers, is_estimated
 
 import conduction
 import crack
@@ -278,8 +279,7 @@ def brake_pad():
 
 @pytest.fixture(scope="module")
 def solved(tmp_path_factory):
-    """Solve examples once each, without uncertainties, which test_companion_runs.py adds; return their
-    results by name."""
+    """Solve examples once each, without uncertainties; return their results by name."""
     folder = tmp_path_factory.mktemp("examples")
 
     @cache
@@ -301,6 +301,15 @@ def test_example_passes_its_checks(solved, name):
         # Rounding of sums over some hundred nodes; the shrink fit's radial sums are no imbalance.
         # Laws settle to 1e-9 of the largest force at a node, and few forces balance in a melt.
         assert (file["history/force_imbalance"][()] < (1e-7 if name == "casting" else 1e-9)).all()
+
+
+@pytest.mark.parametrize("name", [name for name in NAMES if is_estimated(EXAMPLES / f"{name}.inp")])
+def test_estimates_change_no_digit_of_an_example(solved, name, tmp_path):
+    """As of the decks in test_companion_runs.py."""
+    process = run("run", "--quiet", EXAMPLES / f"{name}.inp", "--out", tmp_path, "--errors", "last")
+    assert process.returncode == 0, process.stderr
+    assert process.stderr == ""
+    assert_equal_numbers(solved(name), tmp_path / f"{name}.vtkhdf")
 
 
 def test_heat_that_enters_the_shocked_fit_warms_it(solved):
