@@ -94,7 +94,6 @@ contains
       type(contact_points_type), intent(in) :: interfaces(:)
       type(increment_record_type), intent(in) :: record
       logical :: counts(size(record%fields%temperature))
-      integer :: i
 
       if (.not. allocated(self%steps)) allocate (self%steps(0))
       if (record%last_of_step .and. size(model%steps) > 1) call add_step(self%steps, interfaces, &
