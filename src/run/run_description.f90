@@ -166,12 +166,13 @@ contains
       integer, intent(out) :: status              !! exit status
       type(read_deck_type) :: deck
       type(model_type) :: model
-      type(simulation_type) :: simulation
+      type(simulation_type), allocatable :: simulation
       type(run_summary_type) :: run
       type(error_type), allocatable :: error
       type(json_type) :: members
 
       status = 0
+      allocate (simulation)
       call prepare_deck(path, command, deck, model, simulation, error)
       if (allocated(error)) then
          status = error%status

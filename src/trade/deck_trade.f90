@@ -95,7 +95,7 @@ contains
       integer, intent(out) :: status               !! exit status
       type(read_deck_type), target :: deck
       type(model_type) :: model
-      type(simulation_type) :: simulation
+      type(simulation_type), allocatable :: simulation
       type(input_files_type) :: inputs
       type(row_run_type) :: runs(command%jobs)
       type(trade_type) :: trade
@@ -105,6 +105,7 @@ contains
       integer :: i
 
       status = 0
+      allocate (simulation)
       call prepare_deck(path, command, deck, model, simulation, error, &
          variation_type(order=2, levels=0))
       if (allocated(error)) status = error%status
@@ -353,11 +354,12 @@ contains
       type(adaptive_rounds_type), intent(inout) :: rounds
       type(error_type), allocatable, intent(out) :: error
       type(model_type) :: model
-      type(simulation_type) :: simulation
+      type(simulation_type), allocatable :: simulation
       type(increment_record_type) :: record
       type(number_index_type) :: index
       integer :: i
 
+      allocate (simulation)
       call prepare_deck(self%path, self%command, self%deck, model, simulation, error, &
          rounds%variation)
       if (allocated(error)) return

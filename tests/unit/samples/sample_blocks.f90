@@ -125,10 +125,11 @@ contains
       type(model_type), intent(in) :: model
       type(increment_record_type), intent(out) :: record
       character(:), allocatable, intent(out) :: failure
-      type(simulation_type) :: simulation
+      type(simulation_type), allocatable :: simulation
       type(error_type), allocatable :: error
 
       failure = ''
+      allocate (simulation)
       call simulation%start(model, error)
       do while (.not. allocated(error))
          if (simulation%finished(model)) exit
