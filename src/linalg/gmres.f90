@@ -108,8 +108,8 @@ contains
       x = matmul(self%basis(:, :self%products), part)
    end function solution
 
-   !> Whether det A is negative on the space of the products. Real eigenvalues below 0 are in it where
-   !> the solution needs them; of several that are equal one is.
+   !> Whether det A is negative on the space of the products. Real eigenvalues below 0 are in it
+   !> where the solution needs them; of several that are equal one is.
    pure logical function negative_determinant(self)
       class(gmres_type), intent(in) :: self
 
