@@ -344,7 +344,7 @@ contains
             reason = at_corner
          end if
          call append(lines, summary_line(strain_names(i), self%inelastic_strain(i, b), &
-            mark_of(reason), '', 'body '//to_text(b)))
+            mark_of(reason), '', 'body '//to_text(b)//', at integration points'))
       end do
    end subroutine add_strains
 

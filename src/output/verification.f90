@@ -23,7 +23,7 @@ module verification
       real(dp) :: time = 0.0_dp                 !! total time at which it was judged [time]
       real(dp) :: found = 0.0_dp                !! value found, the worst of a set
       real(dp) :: deviation = 0.0_dp            !! magnitude of its deviation, relative for REL
-      integer :: node = 0                       !! where in a set it failed; 0 for none
+      integer :: node = 0                       !! where in a set the value is; 0 for none
       real(dp), allocatable :: uncertainty      !! of the value; unallocated for none
       integer :: no_estimate = no_reason        !! why it has none
       character(:), allocatable :: reason       !! why there is no value; else empty
@@ -94,8 +94,8 @@ contains
          self%outcomes(i) = outcome_of(model%verifications(i), values, reason)
          self%outcomes(i)%time = record%time
          if (len(self%outcomes(i)%reason) > 0) cycle
-         if (.not. self%outcomes(i)%passed) self%outcomes(i)%node = worst_node( &
-            model%verifications(i), model%mesh, point_node, values)
+         if (.not. (self%outcomes(i)%passed .and. model%verifications(i)%expects)) &
+            self%outcomes(i)%node = worst_node(model%verifications(i), model%mesh, point_node, values)
          if (.not. is_estimable(model%verifications(i))) cycle
          if (is_of_motions(model%verifications(i))) then
             no_estimate = no_finer_value
@@ -176,7 +176,8 @@ contains
             words = trim(check%title()//' '//check%where)
             if (.not. check%at_last) words = words//' at time '//to_text(check%when)
             if (outcome%reason == '') then
-               call append(lines, words//': '//to_text(outcome%found)//uncertainty_words(outcome))
+               call append(lines, words//node_words(outcome)//': '//to_text(outcome%found)// &
+                  uncertainty_words(outcome))
             else
                call append(lines, words//': '//outcome%reason)
             end if
@@ -206,7 +207,7 @@ contains
       end if
    end function failure_words
 
-   !> Where a check of a set failed; empty for no set.
+   !> Where in a set the value is that fails, or that is told of it; empty for no set.
    pure function node_words(outcome) result(words)
       type(outcome_type), intent(in) :: outcome
       character(:), allocatable :: words            !! such as ', node 11'

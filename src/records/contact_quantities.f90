@@ -57,7 +57,8 @@ module contact_quantities
       quantity_type('piece', of_contact_points, '-', is_integer=.true., is_geometry=.true., &
       description='number of the piece of the faces, from 1'), &
       quantity_type('weight', of_contact_points, 'length^2', is_geometry=.true., &
-      description='area of the contact point; times pressure it is the normal force'), &
+      description='area of the contact point of the undeformed mesh; times pressure it is the '// &
+      'normal force'), &
       quantity_type('status', of_contact_points, '-', head='zone', width=5, is_integer=.true., &
       is_on_faces=.true., &
       description='contact state: 0 open, 1 slip, 2 stick; 1 where closed without friction'), &

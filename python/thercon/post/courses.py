@@ -22,6 +22,7 @@ MEANS = "Lines are means over {}"
 BANDS = ", bands reach from the smallest to the largest value"
 DECADES = 1e-3  # of the largest heat rate, the smallest that a logarithmic axis shows
 ORDER = {"master": 1, "out of it": 1, "stored": 2, "through the contact": 3,
+         "sum over the interfaces": 3,
          "taken up by strains": 4, "of friction": 5}
 NOTHING = 1e-6  # of the largest of a panel: curves below it are not drawn
 LOOKS = [  # dashes show what lies below them
@@ -64,7 +65,8 @@ class Picture:
         panels["gap"] = [("", self.contact.get("gap"))]
         panels["temperature"] = [(words, self.contact.get(key)) for key, words in FACES.items()]
         heat = [(words, self.result.history.get(key)) for key, words in HEAT.items()]
-        panels["heat"] = [*heat, ("through the contact", self.contact.get("heat_rate"))]
+        through = "through the contact" if not self.contact.parts else "sum over the interfaces"
+        panels["heat"] = [*heat, (through, self.contact.get("heat_rate"))]
         panels = {name: seen(curves) for name, curves in panels.items()}
         if self.result.is_of_heat:
             panels = {name: panels[name] for name in ("temperature", "heat", *panels)}

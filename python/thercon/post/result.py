@@ -418,9 +418,9 @@ class Result:
 
     @property
     def maxima(self):
-        """Return what `uncertainties` says of each body, by their names."""
-        return {name: self.uncertainties(name) for name in uncertainty_of(self.file) or {}
-                if name.startswith("body ")}
+        """Return what `uncertainties` says of each body, by their names in the order of the numbers."""
+        names = [name for name in uncertainty_of(self.file) or {} if name.startswith("body ")]
+        return {name: self.uncertainties(name) for name in sorted(names, key=lambda n: int(n[5:]))}
 
     @cached_property
     def deck(self):
