@@ -137,13 +137,17 @@ def outcome(deck, command="run", seconds=PATIENCE, words=CRASHES):
 
 
 def numbers(deck):
-    """Return all numbers of a result by their names, a row an increment or a time."""
+    """Return all numbers of a result by their names, a row an increment or a time; of points those that
+    elements use: others have no temperature."""
     result = deck.with_suffix(".vtkhdf")
     with h5py.File(result) as file:
         groups = file.keys() & {"VTKHDF", "history", "contact"}
     found = datasets(result, *groups)
-    times = len(found["VTKHDF/Steps/Values"])
-    return {name: values.reshape(times if "Data/" in name else len(values), -1)
+    times, used = len(found["VTKHDF/Steps/Values"]), np.unique(found["VTKHDF/Connectivity"])
+    points = len(found["VTKHDF/Points"])
+    found |= {name: values.reshape(-1, points, *values.shape[1:])[:, used] for name, values in found.items()
+              if "PointData/" in name}
+    return {name: values.reshape(times if "CellData/" in name else len(values), -1)
             for name, values in found.items() if values.dtype.kind == "f"}
 
 
