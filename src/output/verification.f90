@@ -94,8 +94,10 @@ contains
          self%outcomes(i) = outcome_of(model%verifications(i), values, reason)
          self%outcomes(i)%time = record%time
          if (len(self%outcomes(i)%reason) > 0) cycle
-         if (.not. (self%outcomes(i)%passed .and. model%verifications(i)%expects)) &
-            self%outcomes(i)%node = worst_node(model%verifications(i), model%mesh, point_node, values)
+         if (.not. (self%outcomes(i)%passed .and. model%verifications(i)%expects)) then
+            self%outcomes(i)%node = worst_node(model%verifications(i), model%mesh, point_node, &
+               values)
+         end if
          if (.not. is_estimable(model%verifications(i))) cycle
          if (is_of_motions(model%verifications(i))) then
             no_estimate = no_finer_value
