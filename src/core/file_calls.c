@@ -13,6 +13,11 @@
 #include <unistd.h>
 
 enum { locked_by_another = -1, not_lockable = -2, too_long = -3, block_size = 1 << 20 };
+enum { most_working = 4, longest_path = 4096 };
+
+/* Paths of the working files that this process has made, and its number. */
+static char working[most_working][longest_path];
+static pid_t worker;
 
 /* Number of the first error on standard output. */
 static int standard_output_error = 0;
@@ -119,6 +124,28 @@ int file_try_growth(const char *path, long count)
    return number;
 }
 
+/* Notes a working file, unless it is noted: one that was renamed has its name again later. */
+static void note_working(const char *path)
+{
+   int i;
+
+   if (worker != getpid())
+      memset(working, 0, sizeof working);
+   worker = getpid();
+   for (i = 0; i < most_working && working[i][0] && strcmp(working[i], path) != 0; i++)
+      ;
+   if (i < most_working && strlen(path) < longest_path)
+      strcpy(working[i], path);
+}
+
+/* Removes the working files of this process, from within a handler, too. */
+void file_remove_own_working(void)
+{
+   for (int i = 0; i < most_working && worker == getpid(); i++)
+      if (working[i][0])
+         unlink(working[i]);
+}
+
 /* Makes a new file `stem.<process>.tmp`, where such a file is not there yet, else with the next
    free number; its path goes to `path`, which has room for it. */
 int file_create_working(const char *stem, char *path, int length)
@@ -128,8 +155,10 @@ int file_create_working(const char *stem, char *path, int length)
 
       snprintf(path, (size_t)length, "%s.%ld.tmp", stem, number);
       descriptor = open(path, O_WRONLY | O_CREAT | O_EXCL | O_CLOEXEC, 0666);
-      if (descriptor >= 0)
+      if (descriptor >= 0) {
+         note_working(path);
          return close(descriptor) == 0 ? 0 : errno;
+      }
       if (errno != EEXIST)
          return errno;
    }

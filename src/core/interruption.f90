@@ -36,11 +36,11 @@ module interruption
          import :: c_int
       end function c_is_overdue
 
-      subroutine c_prepare_end(when, shows, deck, where, leftover, other_leftover) &
+      subroutine c_prepare_end(when, shows, deck, where, leftover) &
          bind(c, name='thercon_prepare_end')
          import :: c_char, c_int
          integer(c_int), value :: when, shows
-         character(c_char), intent(in) :: deck(*), where(*), leftover(*), other_leftover(*)
+         character(c_char), intent(in) :: deck(*), where(*), leftover(*)
       end subroutine c_prepare_end
 
       !> Ends the process because so many bytes more are not available, with what is prepared.
@@ -78,17 +78,16 @@ contains
    end subroutine check_overdue
 
    !> From now on this holds where a signal or a lack of memory ends the run: a line on stderr, and
-   !> which files go.
-   subroutine prepare_end(when, shows_progress, deck, where, leftover, other_leftover)
+   !> which file goes, beside working files.
+   subroutine prepare_end(when, shows_progress, deck, where, leftover)
       integer, intent(in) :: when             !! one of the end_* constants
       logical, intent(in) :: shows_progress   !! whether there is a progress line to be cleared
       character(*), intent(in) :: deck        !! path as given
       character(*), intent(in) :: where       !! printed behind the reason
-      !> Paths of files without use then; empty for none
-      character(*), intent(in) :: leftover, other_leftover
+      character(*), intent(in) :: leftover    !! path of a file without use then; empty for none
 
       call c_prepare_end(int(when, c_int), merge(1_c_int, 0_c_int, shows_progress), &
-         deck//c_null_char, where//c_null_char, leftover//c_null_char, other_leftover//c_null_char)
+         deck//c_null_char, where//c_null_char, leftover//c_null_char)
    end subroutine prepare_end
 
 end module interruption

@@ -39,7 +39,7 @@ struct process_end {
 };
 
 static volatile sig_atomic_t caught, times, is_overdue, ends;
-static char deck[longest], where[longest], leftover[longest], other_leftover[longest];
+static char deck[longest], where[longest], leftover[longest];
 static int shows_progress, report_file = -1;
 static struct report filed;   /* what a child has reported */
 
@@ -106,6 +106,7 @@ void *thercon_share(size_t bytes)
 
 /* In file_calls.c. */
 int file_write_all(int descriptor, const char *bytes, size_t count);
+void file_remove_own_working(void);
 
 static void put(int file, const char *words) { file_write_all(file, words, strlen(words)); }
 
@@ -123,7 +124,7 @@ static _Noreturn void end_run(int status, const char *reason)
    put(2, filed.reason);
    put(2, "\n");
    if (leftover[0]) unlink(leftover);
-   if (other_leftover[0]) unlink(other_leftover);
+   file_remove_own_working();
    if (report_file >= 0) (void)!pwrite(report_file, &filed, sizeof filed, 0);
    _exit(status);
 }
@@ -187,7 +188,7 @@ static void take_words(char *buffer, const char *words)
 
 /* When a signal may end the run from now on, and what is then to be said and removed. */
 void thercon_prepare_end(int when, int shows, const char *deck_path, const char *where_words,
-   const char *leftover_path, const char *other_path)
+   const char *leftover_path)
 {
    sigset_t all, before;
 
@@ -196,7 +197,6 @@ void thercon_prepare_end(int when, int shows, const char *deck_path, const char 
    take_words(deck, deck_path);
    take_words(where, where_words);
    take_words(leftover, leftover_path);
-   take_words(other_leftover, other_path);
    shows_progress = shows;
    ends = when;
    if (caught != 0 && ends == at_once) end_by_signal();

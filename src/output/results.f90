@@ -70,7 +70,7 @@ module results
       !> uncertainties are estimated, `/uncertainty` and `/uncertainty/<name>` of each interface,
       !> each body and, with ERRORS=FULL, the increment
       type(result_table_type), allocatable :: tables(:)
-      type(working_file_type), public :: contact_file         !! `NAME.contact.vtkhdf`
+      type(working_file_type) :: contact_file                 !! `NAME.contact.vtkhdf`
       type(contact_grid_type) :: contact_grid                 !! its contents
       logical, public :: has_contact = .false.                !! whether there is such a file
       integer, allocatable :: element_points(:, :)            !! (8, elements)

@@ -23,7 +23,7 @@ module working_files
    type :: working_file_type
       private
       character(:), allocatable, public :: path  !! path of the file in place
-      character(:), allocatable, public :: working_path !! path of the working copy, if there is one
+      character(:), allocatable :: working_path  !! path of the working copy, if there is one
       character(:), allocatable, public :: source   !! file of which the first copy is made, if any
       logical, public :: is_synced = .false.     !! whether it is on the disk before it is in place
       type(hdf5_writer_type), public :: content  !! writes the working copy while it is open

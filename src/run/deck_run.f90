@@ -410,14 +410,13 @@ contains
          ! Increments that wait for their publication are lost with the process.
          if (output%kept_round == 0 .and. output%results%published < increments) words = words// &
             '; the results hold those up to number '//to_text(output%results%published)
-         leftover = or_blank(output%results%file%working_path)
+         leftover = ''
          if (.not. output%listing%is_begun()) then
             ! It is locked, and holds an earlier run or nothing at all.
             inquire (file=or_blank(output%listing%path), size=bytes)
             if (bytes == 0) leftover = output%listing%path
          end if
-         call prepare_end(when, output%progress%is_shown, printable(self%path), words, leftover, &
-            or_blank(output%results%contact_file%working_path))
+         call prepare_end(when, output%progress%is_shown, printable(self%path), words, leftover)
       end associate
    end subroutine may_end
 
