@@ -162,11 +162,11 @@ contains
          contact%links = size(map%link_force)
          allocate (contact%compliance(size(points%slave)), source=0.0_dp)
          contact%alone = contact%own(contact%normal)
-         contact%at_nodes = contact%alone
+         contact%nodal_stiffness = contact%alone
          do k = 1, size(points%slave)
             associate (nodes => points%nodes_of(k))
                own = node_stiffness(mechanical%matrix, nodes, 2)
-               if (own > 0.0_dp) contact%at_nodes(k) = own
+               if (own > 0.0_dp) contact%nodal_stiffness(k) = own
                if (.not. cyclic(k)) then
                   ! Two contact points that carry a body on their own move it without any strain.
                   if (contact%alone(k) <= strainless*own) contact%alone(k) = own

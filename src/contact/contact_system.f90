@@ -80,7 +80,7 @@ module contact_system
       !> (m) normal stiffness of a contact point alone [force/length]
       real(dp), allocatable :: alone(:)
       !> (m) stiffness of the bodies at its nodes, the same for every tail [force/length]
-      real(dp), allocatable :: at_nodes(:)
+      real(dp), allocatable :: nodal_stiffness(:)
       !> Rows of unknowns that no contact point acts on: forces of links, and face nodes
       integer, allocatable :: link(:)
       integer :: links = 0                        !! how many of them are forces of links

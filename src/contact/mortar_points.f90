@@ -281,6 +281,7 @@ contains
       end do
    end subroutine add_row
 
+   !> Adds a multiple of the value of one node.
    pure subroutine add_term(node, coefficient, total)
       integer, intent(in) :: node
       real(dp), intent(in) :: coefficient

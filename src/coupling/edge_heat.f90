@@ -92,7 +92,7 @@ contains
             call bodies%view(i, points)
             call integrate_hats(bodies%points%mortar(i), edges_of(points, &
                bodies%laws%conductance(first), opening(first:last), modulus(first:last), &
-               bodies%equilibrium%contact%at_nodes(first:last), bodies%points%mortar(i)), &
+               bodies%equilibrium%contact%nodal_stiffness(first:last), bodies%points%mortar(i)), &
                is_beside(first:last), &
                beside(found + 1:found + count(is_beside(first:last))))
             associate (new => beside(found + 1:found + count(is_beside(first:last))))

@@ -109,15 +109,17 @@ contains
       type(path_equation_type) :: equation
       type(path_step_type) :: step
 
-      call self%equation(graph, body, opening, equation)
+      if (present(found)) then
+         if (allocated(found)) step = found
+      end if
+      if (.not. allocated(step%equation)) then
+         call self%equation(graph, body, opening, equation)
+         if (allocated(derivative)) call equation%solve(derivative, step)
+      end if
       if (self%step < shortest_step) then
          call restart(self, graph, opening)
          coordinate = self%trial
          return
-      end if
-      if (allocated(derivative)) call equation%solve(derivative, step)
-      if (present(found)) then
-         if (allocated(found)) step = found
       end if
       if (step%sound) call turn(self, step)
       if (step%sound) call judge(self, step)

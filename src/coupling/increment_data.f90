@@ -18,7 +18,11 @@ module increment_data
    implicit none
    private
    public :: contact_scales_type, increment_data_type, increment_workspace_type, load_rate_type, &
-      stage_type, trial_type
+      stage_type, trial_type, of_heat, of_mechanics, inside_heat, inside_mechanics, load_places
+
+   !> Places of known loads: those of the unknowns, and those inside of the pieces of bodies.
+   integer, parameter :: of_heat = 1, of_mechanics = 2, inside_heat = 3, inside_mechanics = 4
+   integer, parameter :: load_places = 4
 
    !> Largest values of an increment, by which gaps and pressures are small.
    type :: contact_scales_type
@@ -114,7 +118,7 @@ module increment_data
    !> A trial solution. A procedure that reads only a part takes that part.
    type :: trial_type
       type(increment_data_type) :: data
-      !> Loads that were solved, those of earlier increments too, of (3.4) and of (2.4)
+      !> (load_places) loads that were solved, those of earlier increments too
       type(solved_loads_type), allocatable :: known(:)
       type(increment_workspace_type) :: workspace
       type(solution_state_type) :: next              !! guess and loads at its end; the solution

@@ -18,7 +18,8 @@ module increment_solution
    use heat_equation, only: heat_equation_type
    use heat_reduction, only: heat_reduction_type
    use held_points, only: tangential_positions
-   use increment_data, only: increment_data_type, increment_workspace_type, trial_type
+   use increment_data, only: increment_data_type, increment_workspace_type, inside_heat, &
+      inside_mechanics, load_places, of_heat, of_mechanics, trial_type
    use kinds, only: dp
    use loads, only: loads_type
    use overlap_laws, only: overlap_law_type
@@ -32,9 +33,6 @@ module increment_solution
    implicit none
    private
    public :: begin_increment, carry_to_faces, fill_bodies, load_points, solve_points, recover_fields
-
-   !> Places of known loads: those of the unknowns, and those inside of the pieces of bodies.
-   integer, parameter :: of_heat = 1, of_mechanics = 2, inside_heat = 3, inside_mechanics = 4
 
 contains
 
@@ -50,7 +48,7 @@ contains
       type(trial_type), intent(inout) :: trial
       type(error_type), allocatable, intent(out) :: error
 
-      if (.not. allocated(trial%known)) allocate (trial%known(4))
+      if (.not. allocated(trial%known)) allocate (trial%known(load_places))
       associate (data => trial%data, workspace => trial%workspace, next => trial%next)
          next%edge = data%edge
          next%keeps_imbalance = solves_heat(data%analysis) .and. data%equation%never_damps()

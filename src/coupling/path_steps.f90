@@ -18,7 +18,8 @@ module path_steps
    !>    [               border                      ]        [    ]
    type :: path_equation_type
       real(dp), allocatable :: advance(:)       !! (n) of the openings [length]
-      real(dp), allocatable :: slope(:)         !! (n) of the conductances
+      !> (n) of the conductances [power/(length^2 temperature)]
+      real(dp), allocatable :: slope(:)
       real(dp), allocatable :: by_parameter(:)  !! (n) [length]
       real(dp), allocatable :: border(:)        !! (n + 1)
       real(dp), allocatable :: rest(:)          !! (n) what the equations lack [length]
@@ -37,10 +38,10 @@ module path_steps
 
 contains
 
-   !> The step where D is a matrix.
+   !> The step where D is a matrix; not sound where the equations are singular.
    subroutine solve(self, derivative, step)
       class(path_equation_type), intent(in) :: self
-      real(dp), intent(in) :: derivative(:, :)   !! (n, n) D
+      real(dp), intent(in) :: derivative(:, :)   !! (n, n) D [length/(power/(length^2 temperature))]
       type(path_step_type), intent(out) :: step
       real(dp) :: matrix(size(self%border), size(self%border))
       integer :: k, n

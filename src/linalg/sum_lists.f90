@@ -100,11 +100,10 @@ contains
       self%start(self%count + 1) = term
    end subroutine add
 
-   !> Adds a value as it is.
+   !> Adds a value as it is, without the arrays that `add` needs: faces that slide have many.
    pure subroutine add_value(self, value)
       class(sum_list_type), intent(inout) :: self
       integer, intent(in) :: value
-
       integer :: term
 
       term = self%start(self%count + 1)

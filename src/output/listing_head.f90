@@ -45,15 +45,15 @@ contains
       type(verifier_type), intent(in) :: verifier  !! of this round
       type(run_summary_type), intent(in) :: run
       character(:), allocatable :: line
-      integer :: counts(3)
 
       line = 'no *VERIFY checks'
       if (size(verifier%outcomes) > 0 .or. run%verify_passed + run%verify_failed > 0) then
          line = counts_of_checks(run%verify_passed, run%verify_failed)
          if (size(verifier%outcomes) == 0) line = line//' in round 1'
       end if
-      counts = verifier%counts()
-      if (counts(3) > 0) line = line//', '//to_text(counts(3))//' not judged'
+      associate (waiting => count(.not. verifier%outcomes%judged))
+         if (waiting > 0) line = line//', '//to_text(waiting)//' not judged'
+      end associate
    end function checks
 
    !> The summary as it is in the file: always as many lines of the same length, so that it can be

@@ -179,7 +179,7 @@ contains
 
       since = wall_seconds()
       if (size(self%verifier%outcomes) > 0) then
-         counts = self%verifier%counts()
+         counts = self%verifier%counts(model)
          self%run%verify_passed = counts(1)
          self%run%verify_failed = counts(2)
       end if
@@ -283,7 +283,7 @@ contains
             call append(lines, failure_words(check, outcome))
          end associate
       end do
-      counts = self%verifier%counts()
+      counts = self%verifier%counts(model)
       if (counts(3) > 0) call append(lines, self%run%deck_path//': note: '// &
          counted(counts(3), '*VERIFY check')//' could not be judged: the run ended before '// &
          trim(merge('its time   ', 'their times', counts(3) == 1)))

@@ -19,7 +19,6 @@ module verification
    type :: outcome_type
       logical :: judged = .false.               !! whether its time was reached
       logical :: passed = .false.               !! the verdict; no value expected: nothing to fail
-      logical :: expects = .true.               !! whether a value is expected
       real(dp) :: time = 0.0_dp                 !! total time at which it was judged [time]
       real(dp) :: found = 0.0_dp                !! value found, the worst of a set
       real(dp) :: deviation = 0.0_dp            !! magnitude of its deviation, relative for REL
@@ -53,7 +52,6 @@ contains
       allocate(self%outcomes(size(model%verifications)), self%levels(size(model%verifications)))
       do i = 1, size(self%outcomes)
          self%outcomes(i)%reason = 'the run ended before this time'
-         self%outcomes(i)%expects = model%verifications(i)%expects
          if (allocated(model%verifications(i)%level)) self%levels(i)%level = &
             model%verifications(i)%level
       end do
@@ -153,13 +151,14 @@ contains
 
    !> Numbers of the checks that passed, that failed, and that could not be judged, because the run
    !> ended before their times. What only asks for a value does not pass.
-   pure function counts(self)
+   pure function counts(self, model)
       class(verifier_type), intent(in) :: self
+      type(model_type), intent(in) :: model
       integer :: counts(3)
 
       associate (outcomes => self%outcomes)
-         counts = [count(outcomes%passed .and. outcomes%expects), count(outcomes%judged .and. &
-            .not. outcomes%passed), count(.not. outcomes%judged)]
+         counts = [count(outcomes%passed .and. model%verifications%expects), &
+            count(outcomes%judged .and. .not. outcomes%passed), count(.not. outcomes%judged)]
       end associate
    end function counts
 
@@ -235,7 +234,6 @@ contains
       type(outcome_type) :: outcome
 
       outcome%judged = .true.
-      outcome%expects = check%expects
       outcome%passed = .not. check%expects
       outcome%reason = reason
       if (reason /= '') return

@@ -58,7 +58,7 @@ module contact_quantities
       description='number of the piece of the faces, from 1'), &
       quantity_type('weight', of_contact_points, 'length^2', is_geometry=.true., &
       description='area of the contact point of the undeformed mesh; times pressure it is the '// &
-      'normal force'), &
+      'normal force, unless faces follow sliding'), &
       quantity_type('status', of_contact_points, '-', head='zone', width=5, is_integer=.true., &
       is_on_faces=.true., &
       description='contact state: 0 open, 1 slip, 2 stick; 1 where closed without friction'), &

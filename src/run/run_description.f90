@@ -21,7 +21,6 @@ module run_description
    use run_summaries, only: in_check, put_run, run_entries, run_entry_type, run_summary_type
    use simulation, only: simulation_type
    use steps, only: analysis_coupled, solves_heat, solves_mechanics
-   use tail_choice, only: has_sparse_tail
    use text, only: counted, string_type, to_text
    use utf8, only: character_count
    use version, only: program_version
@@ -42,8 +41,10 @@ contains
       run%deck_path = path
       run%solver = 'SKYLINE'
       if (model%solver == solver_mumps) run%solver = 'MUMPS'
-      if (has_sparse_tail(model, real(size(simulation%bodies%points%slave), dp))) run%solver = &
-         'SKYLINE, sparse tail'
+      associate (division => simulation%bodies%mechanical%division)
+         if (allocated(division%graph%value) .and. division%cuts_bodies()) run%solver = &
+            'SKYLINE, sparse tail'
+      end associate
       call name_physics(model, run)
       run%sizes = simulation%sizes
       if (any(solves_heat(model%steps%analysis))) call find_biot(model, simulation, run)

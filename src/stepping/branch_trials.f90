@@ -10,7 +10,7 @@ module branch_trials
    use field_problem, only: solved_loads_type
    use fixed_point, only: pass_type
    use heat_reduction, only: heat_reduction_type
-   use increment_data, only: load_rate_type, trial_type
+   use increment_data, only: load_places, load_rate_type, trial_type
    use increment_iteration, only: pass_on_branch
    use increment_solution, only: begin_increment, load_points
    use kinds, only: dp
@@ -95,7 +95,7 @@ contains
       type(path_step_type) :: step
       integer :: k, m
 
-      allocate (self%known(2))
+      allocate (self%known(load_places))
       call load_increment(self, loaded, error)
       if (allocated(error)) return
       self%rate = load_rate_type(loaded%data%heat%condensed, loaded%data%no_jump_load)

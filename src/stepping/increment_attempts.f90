@@ -14,7 +14,7 @@ module increment_attempts
    use heat_storage, only: begin_first_stage, begin_second_stage, measure_changes, measure_strains
    use increment_checks, only: check_heat, check_record, note_shock, warn_of_choices, &
       warn_of_tables
-   use increment_data, only: stage_type, trial_type
+   use increment_data, only: load_places, stage_type, trial_type
    use increment_records, only: complete_record
    use field_problem, only: solved_loads_type
    use increment_solution, only: begin_increment, carry_to_faces, fill_bodies, recover_fields, &
@@ -340,15 +340,15 @@ contains
             if (.not. allocated(error)) call solve_fields(run, model, attempt, error)
             return
          end if
-         allocate (known(2))
+         allocate (known(load_places))
          if (allocated(attempt%known)) known = attempt%known
+         ! Conductances to start from are those of an earlier turn of the stage.
          if (allocated(attempt%omega_start) .and. .not. melts) then
             call corrections%begin_again()
          else
             call corrections%begin(model, run%bodies, attempt%stage, attempt%before, &
                takes_past=abs(step%scheme%b(1)) > 0.0_dp)
          end if
-         corrections%is_rough = attempt%is_rough
          if (melts) call foresee_melting(run, model, attempt)
          call reduce_heat(run, model, attempt, error)
          if (allocated(error)) return
@@ -356,7 +356,8 @@ contains
             call corrections%give(attempt%data%equation, attempt%next)
             call solve_fields(run, model, attempt, error)
             if (allocated(error)) return
-            call corrections%correct(model, run%bodies, attempt%next, error)
+            call corrections%correct(model, run%bodies, attempt%next, merge(rough, 0.0_dp, &
+               attempt%is_rough), error)
             if (allocated(error)) return
             if (corrections%is_settled) exit
             attempt%known = known

@@ -332,10 +332,10 @@ contains
       real(dp) :: overlap(first:last)                      ! [length]
 
       overlap = 0.0_dp
-      associate (contact => bodies%equilibrium%contact)
-         if (.not. allocated(contact%at_nodes)) return
-         where (force(first:last) > 0.0_dp .and. contact%at_nodes(first:last) > 0.0_dp) overlap = &
-            force(first:last)/contact%at_nodes(first:last)
+      if (.not. allocated(bodies%equilibrium%contact%nodal_stiffness)) return
+      associate (own => force(first:last), &
+         stiffness => bodies%equilibrium%contact%nodal_stiffness(first:last))
+         where (own > 0.0_dp .and. stiffness > 0.0_dp) overlap = own/stiffness
       end associate
    end function overlaps
 

@@ -136,7 +136,7 @@ contains
    end subroutine try_again
 
    !> What a run was carrying last before bodies that yield found no equilibrium under forces that
-   !> grow, or that no shorter increment has less of them; nothing for others.
+   !> grow, or how the forces would grow where they act at once; nothing for others.
    function words_of_collapse(run, model) result(words)
       type(simulation_type), intent(in) :: run
       type(model_type), intent(in) :: model

@@ -17,8 +17,8 @@
 !> Operators that are far too soft, formed where points yielded or were molten that now resist, lead
 !> astray: what is left over grows. New ones are then formed at the pass that left least over. If
 !> these lead astray, too, or to nothing better, the next ones have half of the elasticity, with
-!> which points that unload do not diverge, but slowly; once they have led to something better, the
-!> next ones have none of it again.
+!> which points that unload do not diverge. These converge slowly: once they have led to something
+!> better, the next ones have the least part of it again.
 module operator_corrections
    use anderson_mixing, only: mixing_type
    use element_kinds, only: element_node_count
@@ -45,7 +45,6 @@ module operator_corrections
    public :: corrections_type
 
    real(dp), parameter :: settled = 1.0e-9_dp  !! part of heat and forces that is left over
-   real(dp), parameter :: roughly = 1.0e-4_dp  !! the same of a rough solution
    !> Part of terms that cancel which is their rounding: sqrt(n) epsilon in a solution of n = 2e5
    !> unknowns
    real(dp), parameter :: rounding = 1.0e-13_dp
@@ -89,7 +88,6 @@ module operator_corrections
       integer :: failed_element = 0                !! index of the first whose law found no stress
       integer, public :: passes = 0                !! of the stage
       logical, public :: is_settled = .false.      !! whether a solution is that of its corrections
-      logical, public :: is_rough = .false.        !! whether a rough solution will do
       logical, public :: asks_operators = .false.  !! whether operators are to be formed at it
       logical, public :: goes_back = .false.       !! or at the pass that left least over
       logical, public :: asks_capacity = .false.   !! whether C alone is, where other nodes melt
@@ -271,11 +269,12 @@ contains
 
    !> Corrects to a solution, unless what is left over is rounding.
    !> Error: no convergence.
-   subroutine correct(self, model, bodies, next, error)
+   subroutine correct(self, model, bodies, next, tolerance, error)
       class(corrections_type), intent(inout) :: self
       type(model_type), intent(in) :: model
       type(reduced_bodies_type), intent(in) :: bodies
       type(solution_state_type), intent(in) :: next          !! solved with the present corrections
+      real(dp), intent(in) :: tolerance                      !! of that solution, where it is rough
       type(error_type), allocatable, intent(out) :: error
       character(:), allocatable :: words
       real(dp), allocatable :: left_over(:), x(:)
@@ -293,8 +292,7 @@ contains
       self%goes_back = .false.
       self%asks_capacity = .false.
       self%melting%jumps = .false.
-      self%is_settled = self%failed_element == 0 .and. self%left_over <= merge(roughly, settled, &
-         self%is_rough)
+      self%is_settled = self%failed_element == 0 .and. self%left_over <= max(settled, tolerance)
       if (self%is_settled) return
       if (self%failed_element > 0) then
          call lead_back(self)

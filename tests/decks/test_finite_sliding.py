@@ -134,28 +134,33 @@ def test_nodes_where_both_faces_end_stay_opposite(tmp_path, kind, ends, short, r
 @pytest.mark.parametrize("count", [3, 5])
 @pytest.mark.parametrize("friction", [0.1, 0.3])
 def test_hot_blocks_that_yield_follow_sliding_in_whole_increments(tmp_path, friction, count):
-    """Strains are 4e-3, and so much do faces that slide a little differ from those that do not."""
-    found = []
-    for name, pair in ("slid", PAIRS[0]), ("drawn", ", PAIRING=SURFACES"):
-        stores = {"density": 7.8e-9, "specific_heat": 4.6e5}
-        hot = material("UP", (2e5, 0.3), 1.2e-5, 50.0, **stores)
-        found.append(final(tmp_path, name, [
-            *mesh("UP", np.linspace(1.0, 3.6, count + 1), [0.0, 1.4], "CPE4", first=101),
+    """What faces that follow sliding do else than those that do not falls with the strains, here all of
+    3e-3 and a tenth of them with the same stresses."""
+    off = []
+    for part in 1.0, 0.1:
+        slid, drawn = (final(tmp_path, f"{name}{part}", hot_block(pair, friction, count, part))
+                       for name, pair in (("slid", PAIRS[0]), ("drawn", ", PAIRING=SURFACES")))
+        assert slid["von_mises"].max() > 100.0   # it yields
+        off.append([abs(slid[name] - drawn[name]).max() / abs(drawn[name]).max()
+                    for name in ("pressure", "heat_flux")])
+    assert np.all(np.array(off[1]) < 0.2 * np.array(off[0]))
+
+
+def hot_block(pair, friction, count, part):
+    """Return a hot block that is pressed on a cold one and yields; strains are a part of 3e-3."""
+    upper, lower = (material(name, (young / part, 0.3), 1.2e-5 * part, 50.0)
+                    for name, young in (("UP", 2e5), ("LOW", 1e5)))
+    return [*mesh("UP", np.linspace(1.0, 3.6, count + 1), [0.0, 1.4], "CPE4", first=101),
             *mesh("LOW", np.linspace(0.0, 5.0, 6), [-1.5, 0.0], "CPE4"),
-            *hot[:-1], "*PLASTIC", "100., 0.", "200., 0.05", hot[-1],
-            *material("LOW", (1e5, 0.3), 1.2e-5, 50.0, **stores),
-            "*SURFACE INTERACTION, NAME=I", "*FRICTION", repr(friction), "*GAP LAW, TYPE=GAS", "0.02, 0.01",
-            "*GAP LAW, TYPE=POWER", "2., 0.05, 0.9",
+            *upper[:-1], "*PLASTIC", "100., 0.", f"200., {0.05 * part!r}", upper[-1], *lower,
+            "*SURFACE INTERACTION, NAME=I", "*FRICTION", repr(friction), "*GAP LAW, TYPE=GAS",
+            f"{0.02 * part!r}, {0.01 * part!r}", "*GAP LAW, TYPE=POWER", "2., 0.05, 0.9",
             f"*CONTACT PAIR, INTERACTION=I, NAME=FACE{pair}", "UP.BOTTOM, LOW.TOP",
             "*INITIAL CONDITIONS, TYPE=TEMPERATURE", "UP, 20.", "LOW, 20.",
             "*BOUNDARY", "LOW.BOTTOM, 1, 2", "*STEP",
             "*COUPLED TEMPERATURE-DISPLACEMENT, DIRECT, STEADY STATE", "0.25, 1.", "*BOUNDARY",
-            "UP.TOP, 1, 1, 0.", "UP.TOP, 2, 2, -0.002", "UP.TOP, 11, 11, 280.",
-            "LOW.BOTTOM, 11, 11, 20.", "*END STEP"]))
-    for name in "pressure", "heat_flux":
-        np.testing.assert_allclose(found[0][name], found[1][name], rtol=0.0,
-                                   atol=0.02 * found[1][name].max())
-    assert found[0]["von_mises"].max() > 100.0
+            "UP.TOP, 1, 1, 0.", f"UP.TOP, 2, 2, {-0.002 * part!r}", "UP.TOP, 11, 11, 280.",
+            "LOW.BOTTOM, 11, 11, 20.", "*END STEP"]
 
 
 def test_tiny_strains_give_what_small_sliding_gives_where_the_pad_is_drawn(tmp_path):

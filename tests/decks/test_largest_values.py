@@ -105,7 +105,7 @@ def test_without_uncertainties_nothing_is_told(tmp_path):
 
 
 def test_many_interfaces_have_the_largest_values_at_each_step(tmp_path):
-    """Those of three interfaces; a node that no element uses does not make the lowest temperature."""
+    """Each is of its own interface; a node that no element uses does not make the lowest temperature."""
     cards = rod(6, counts=(2, 2, 1))
     second = cards[cards.index("*STEP"):]
     deck = write(tmp_path / "deck.inp", ["*NODE", "999999, 0., 0."], cards, second)
