@@ -14,13 +14,13 @@ module results
    use errors, only: error_type
    use field_quantities, only: maxima
    use file_calls, only: identity_of, remove_file, rename_file, try_file
-   use growing_datasets, only: bytes_in, flush_sets
+   use growing_datasets, only: bytes_in, flush_sets, write_integers
    use history_results, only: history_results_type
    use materials, only: melts, of_expansion, reference_nodes
    use increment_quantities, only: history_estimated
    use result_tables, only: result_table_type, with_uncertainty, write_geometry
    use equations, only: section_nodes
-   use hdf5_writer, only: end_hdf5, hdf5_writer_type, start_hdf5
+   use hdf5_writer, only: as_integer, end_hdf5, hdf5_writer_type, start_hdf5
    use kinds, only: dp, long
    use model, only: model_type, uncertainty_full
    use no_estimates, only: no_reason, reason_count, reason_inside_step, reason_of_run, &
@@ -493,7 +493,12 @@ contains
                call file%set(group, 'friction', &
                   model%interactions(model%contacts(i)%interaction)%friction%coefficient)
                call file%set(group, 'pairing', pairing_name(interfaces(i)%pairing))
-               if (interfaces(i)%follows_sliding) call file%set(group, 'sliding', 'FINITE')
+               if (interfaces(i)%follows_sliding) then
+                  call file%set(group, 'sliding', 'FINITE')
+                  call write_integers(file, group//'/face_node', &
+                     model%mesh%node_number(interfaces(i)%face_node), as_integer, &
+                     'numbers of the nodes of both faces')
+               end if
                call write_geometry(file, group//'/', interfaces(i:i), model%mesh%node_number)
             end associate
          end do

@@ -4,8 +4,9 @@ module summary
    use, intrinsic :: ieee_arithmetic, only: ieee_is_nan, ieee_quiet_nan, ieee_value
    use contact_extents, only: is_end_of_face, rises_to_end
    use contact_points, only: contact_points_type
-   use contact_quantities, only: contact_values, end_words, estimated, has_quantity, &
-      zone_words
+   use contact_definitions, only: makes_friction_heat
+   use contact_quantities, only: contact_table, contact_values, end_words, estimated, &
+      has_quantity, zone_words
    use contact_system, only: contact_open, contact_stick
    use increment_quantities, only: history_estimated, leading_words, stability_words
    use equations, only: section_nodes
@@ -16,9 +17,9 @@ module summary
    use mesh_bodies, only: body_name
    use model, only: model_type
    use model_words, only: has_many
-   use no_estimates, only: at_corner, mark_of, no_finer_value, no_reason, reason_inside_step, &
-      reason_of_run
-   use quantity_types, only: find_quantity, quantity_type
+   use no_estimates, only: at_corner, mark_of, no_finer_value, no_reason, of_checks, &
+      reason_inside_step, reason_of_run
+   use quantity_types, only: find_quantity, needs_wear, of_interface, quantity_type
    use records, only: body_uncertainty_type, contact_record_type, increment_record_type, &
       uncertainty_type
    use text, only: append, few_digits, or_blank, percent, string_type, to_text
@@ -46,6 +47,10 @@ module summary
    integer, parameter :: first_strain = size(maxima) - size(strain_names)   !! before it in maxima
    character(*), parameter :: heat_names(4) = [character(field_width) :: 'lowest temperature', &
       'highest temperature', 'heat in', 'heat out']
+   !> Volumes that the faces of an interface have lost, that of the slave first
+   type(quantity_type), parameter :: worn(2) = pack(contact_table, contact_table%kind == &
+      of_interface .and. contact_table%needs == needs_wear)
+   character(*), parameter :: worn_faces(2) = [character(6) :: 'slave', 'master']
    !> As quantities of history that have uncertainties, where they are
    character(*), parameter :: heat_quantities(4) = [character(8) :: '-', '-', 'heat_in', 'heat_out']
    character(*), parameter :: heat_units(4) = [character(11) :: 'temperature', 'temperature', &
@@ -64,6 +69,7 @@ module summary
       real(dp), allocatable :: heat(:)
       !> The largest magnitude of a displacement [length]
       real(dp), allocatable :: displacement
+      real(dp), private :: friction_heat = 0.0_dp   !! made by friction; NaN without it [power]
       character(:), allocatable, private :: cycle  !! what the last cycle did, or none
       !> (2, bodies) as in the record, or none
       real(dp), allocatable, private :: inelastic_strain(:, :)
@@ -111,6 +117,7 @@ contains
       if (allocated(record%cycle)) self%cycle = record%cycle
       if (allocated(self%solid_time)) deallocate (self%solid_time)
       if (allocated(record%solid_time)) self%solid_time = record%solid_time
+      self%friction_heat = record%heat_friction
       if (allocated(self%history_errors)) deallocate (self%history_errors)
       if (allocated(record%history_uncertainties)) self%history_errors = &
          record%history_uncertainties
@@ -230,6 +237,8 @@ contains
             merge(2, 1, has_many(interfaces)) + told*steps
          if (any(model%steps%cycle%steps > 0)) most_lines = most_lines + 1
          if (any(melts(model%materials))) most_lines = most_lines + 1
+         if (makes_friction_heat(model%interactions, model%contacts)) most_lines = most_lines + 1
+         if (any(model%interactions%wear%wears())) most_lines = most_lines + told*size(worn)
          if (allocated(model%couplings)) most_lines = most_lines + 1 + &
             count(model%couplings%is_section())
          if (any(model%steps%stability_frequency > 0)) most_lines = most_lines + 3 + &
@@ -284,6 +293,9 @@ contains
       end if
       if (allocated(self%pre_tension)) call add_pre_tensions(self, model, lines)
       if (allocated(self%inelastic_strain)) call add_strains(self, model, lines)
+      if (.not. ieee_is_nan(self%friction_heat)) call append(lines, summary_line( &
+         'heat of friction', self%friction_heat, history_words(self, model, 'heat_friction'), &
+         unit_label('power', model%units), trim(merge('in all', '      ', size(interfaces) > 1))))
       if (allocated(self%solid_time)) call append(lines, summary_line('all solid at', &
          self%solid_time, history_words(self, model, 'solid_time'), or_blank(model%units%time), ''))
       if (allocated(self%cycle)) call append(lines, self%cycle)
@@ -501,7 +513,26 @@ contains
          call append(lines, summary_line(words_of(estimated(q)%name), values(1), uncertainty, &
             unit_label(estimated(q)%unit, model%units), interfaces(i)%name))
       end do
+      do q = 1, size(worn)
+         i = largest_at(worn(q)%name, self%contacts)
+         if (i > 0) call add_worn(model, self%contacts(i), q, ' of '//interfaces(i)%name, lines)
+      end do
    end subroutine add_largest
+
+   !> The volume that a face has lost, where it has.
+   subroutine add_worn(model, contact, q, of, lines)
+      type(model_type), intent(in) :: model
+      type(contact_record_type), intent(in) :: contact
+      integer, intent(in) :: q                       ! index of `worn`
+      character(*), intent(in) :: of                 ! in words, which interface
+      type(string_type), allocatable, intent(inout) :: lines(:)
+      real(dp) :: volume(1)
+
+      if (.not. has_quantity(contact, needs_wear)) return
+      volume = contact_values(worn(q)%name, contact)
+      if (volume(1) > 0.0_dp) call append(lines, summary_line('worn volume', volume(1), &
+         mark_of(of_checks), unit_label(worn(q)%unit, model%units), trim(worn_faces(q))//of))
+   end subroutine add_worn
 
    subroutine add_quantities(self, model, points, i, lines)
       class(summary_type), intent(in) :: self
@@ -543,6 +574,9 @@ contains
             line//', '//trim(merge('closed', 'stick ', estimated(q)%name == 'edge_contact'))// &
             ' '//zone
          call append(lines, line)
+      end do
+      do q = 1, size(worn)
+         call add_worn(model, self%contacts(i), q, '', lines)
       end do
    end subroutine add_quantities
 

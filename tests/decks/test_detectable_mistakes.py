@@ -110,6 +110,42 @@ def test_bodies_that_touch_are_told_once_for_two(tmp_path):
     assert "body 1 (" in one(warnings(tmp_path, cards, pair, held, STEP), "")
 
 
+@pytest.mark.parametrize("kind", ["CPE8", "CPE4", "CPE3"])
+@pytest.mark.parametrize(("xs", "gap", "told"), [
+    (XS, -2.0, True), (XS, -1.0, True), ([1.0, 2.0], -1.5, True), (XS, -0.5, False), (XS, -2.5, False),
+    ([3.5, 4.5], -1.5, False)])
+@pytest.mark.parametrize("related", [[], PAIR], ids=["apart", "pair"])
+def test_a_body_that_lies_wholly_inside_another(tmp_path, kind, xs, gap, told, related):
+    """The inner one fills the upper or the lower half, or is within; not where only a part of it is."""
+    found = [message for message, _ in warnings(tmp_path, blocks(xs=xs, gap=gap, kinds=(kind, kind)), related,
+                                                HELD, STEP) if "wholly" in message]
+    assert found == told * ["body 2 (of HIGH, first node 101) lies wholly inside body 1 (of LOW, first node "
+                            "1): both fill the same place; check the positions of the bodies"]
+
+
+def test_two_bodies_of_one_shape_at_one_place_are_told_once(tmp_path):
+    twin = [card for name, first in (("LOW", 1), ("HIGH", 101))
+            for card in mesh(name, XS, [0.0, 1.0, 2.0], first=first)]
+    found = warnings(tmp_path, twin, *(solid(name, 2e5, 0.3) for name in ("LOW", "HIGH")), HELD, STEP)
+    assert [message for message, _ in found if "wholly" in message] == [found[0][0]]
+
+
+@pytest.mark.parametrize("kind", ["CPE8", "CPE4"])
+@pytest.mark.parametrize("thickness", [0.02, 1.0])
+def test_a_sleeve_in_a_bore_lies_inside_nothing(tmp_path, kind, thickness):
+    """However thin: sides of the ring and of the sleeve have the same ends, or lie between them."""
+    cards = []
+    for name, radii, count, first in (("LOW", [2.0, 3.0], 12, 1), ("HIGH", [2.0 - thickness, 2.0], 24, 501)):
+        def to(x, y):
+            angle = 2 * np.pi * x / count  # noqa: B023  used before the next one
+            return y * np.cos(angle), -y * np.sin(angle)
+
+        cards += mesh(name, list(map(float, range(count + 1))), radii, kind, first, to=to, closed=True)
+        cards += solid(name, 2e5, 0.3)
+    found = warnings(tmp_path, cards, HELD, STEP)
+    assert not [message for message, _ in found if "wholly" in message]
+
+
 def ring(closed, count=12):
     """Return a ring, closed or cut along a seam, with its bore held."""
     def to(x, y):

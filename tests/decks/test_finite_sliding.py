@@ -10,6 +10,7 @@ from calculix import thercon
 from deck_runs import datasets, run, solve, solve_as_written
 from physics import follows, judge, material, mesh, nodes_of
 from test_restart import assert_same, go_on
+from thercon.post.result import Result
 
 FINITE = ", SLIDING=FINITE"
 RAIL = mesh("RAIL", np.linspace(0.0, 10.0, 41), [-2.0, -1.0, -0.5, -0.25, 0.0], "CPE4")
@@ -215,6 +216,20 @@ def test_friction_takes_the_work_of_the_drive(tmp_path, pair, tail):
                        deck.with_suffix(".lst").read_text())
     assert len(parts) >= 20
     assert max(abs(float(part)) for part in parts[-18:]) < 1e-3
+    with h5py.File(tmp_path / "deck.vtkhdf") as file:
+        assert file["history/heat_friction"][-1] > 0.0
+        told = f"heat of friction {file['history/heat_friction'][-1]:.6g} (no estimate: "
+    assert told in " ".join(deck.with_suffix(".lst").read_text().split())
+
+
+def test_the_picture_of_the_mesh_marks_both_faces_to_their_ends(tmp_path):
+    """Also where the pad never is."""
+    with Result(solve(write(tmp_path / "deck.inp", sliding(0.3, heat=False)))) as result:
+        marked = [np.unique(result.cells.node_id[edges[:, :2]])
+                  for edges in result.faces(result.contact("FACE"))]
+    own = [n for n, (_, y) in nodes_of(pad()).items() if y == 0.0]
+    for found, expected in zip(marked, (own, AMONG_RAIL), strict=True):
+        np.testing.assert_array_equal(found, expected)
 
 
 LOAD = 200.0

@@ -198,8 +198,14 @@ def test_its_uncertainty_holds_the_exact_volume(tmp_path):
 
 
 def test_without_a_check_it_says_what_estimates_it(tmp_path):
-    deck = write(tmp_path / "deck.inp", ["*OPTIONS, ERRORS=FULL", *bar(0.25)])
+    """The master does not wear."""
+    deck = write(tmp_path / "deck.inp", ['*OPTIONS, ERRORS=FULL, UNITS="mm MPa W C"', *bar(0.25)])
     found = json.loads(run("run", "--json", deck, "--out", tmp_path).stdout)
     for side in ("slave", "master"):
         told = found["summary"]["interfaces"]["C"][f"worn_volume_{side}"]
         assert told["no_estimate"] == "*VERIFY; ERRORS=FULL" and "uncertainty" not in told
+    value = found["summary"]["interfaces"]["C"]["worn_volume_slave"]["value"]
+    (line,) = re.findall("^ +worn volume .*", (tmp_path / "deck.lst").read_text(), re.M)
+    told, rest = re.fullmatch(r" +worn volume +(\S+) (.*)", line).groups()
+    assert float(told) == pytest.approx(value, rel=1e-5)
+    assert rest.rstrip() == "(no estimate: *VERIFY; ERRORS=FULL) mm^3, slave"

@@ -50,6 +50,7 @@ GEOMETRY = ("slave_node", "master_node", "x", "y", "s", "piece", "weight")
 # Those that every contact has of its points at the increments, and of its edges.
 STATES = ("pressure", "status")
 EDGES = ("edge_contact", "edge_stick", "edges_contact", "edges_stick")
+FACES = "face_node"  # nodes of both faces, of faces that slide
 PATTERN = "*"  # in names of contacts: any characters
 NOISE = 1e-9  # of what it is beside: smaller values are rounding
 LOADS_TO = 1e-12  # of the largest load: loads are sums of at most some thousand increments
@@ -522,7 +523,8 @@ class Result:
                  for key in EDGES}
         need(group, np.all(np.diff(data["s"]) >= 0.0), "s does not grow along the face")
         need(group, np.isin(states["status"], (OPEN, SLIP, STICK)).all(), "status is not 0, 1 or 2")
-        others = {key: numbers(group, key) for key in group if key not in {*data, *states, *edges}}
+        others = {key: numbers(group, key) for key in group
+                  if key not in {*data, *states, *edges, FACES}}
         for key, values in others.items():
             fits = values.shape in ((self.increments,), (self.increments, points))
             need(group, fits, f"{key} has not one row for each increment")
@@ -591,9 +593,13 @@ class Result:
         """Return the element edges of slave and master of a contact.
 
         Where its nodes are not paired, they are those that carry contact quantities: the slave's
-        have contact points at their ends, the master's none.
+        have contact points at their ends, the master's none. Faces that slide have all their nodes.
         """
-        cells = self.cells
+        cells, group = self.cells, self.file["contact"][contact.name]
+        if FACES in group:
+            both = cells.face(numbers(group, FACES, like=(None,)))
+            own = np.isin(cells.node_id[both[:, :2]], contact["slave_node"]).all(axis=1)
+            return [both[own], both[~own]]
         if contact.pairing == "NODES":
             return [cells.face(contact[key]) for key in ("slave_node", "master_node")]
         ends = np.concatenate([each["slave_node"] for each in self.contacts()])

@@ -9,6 +9,7 @@ module touch_checks
    use kinds, only: dp
    use mesh, only: mesh_type
    use model, only: model_type
+   use overlap_checks, only: check_overlaps
    use sorting, only: invert_lists, number_index_type, sort_order
    use text, only: counted, others, to_text
    implicit none
@@ -46,6 +47,7 @@ contains
       integer :: bodies(2), first, i, k, last
 
       sides = find_sides(deck%mesh)
+      call check_overlaps(deck, sides)
       call find_touches(deck%mesh, sides, touches)
       if (size(touches) == 0) return
       call drop_related(deck%model, sides, touches)
