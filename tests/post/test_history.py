@@ -213,7 +213,9 @@ def test_times_and_temperatures_have_their_units(usual, tmp_path):
     with Result(path) as opened:
         (top,) = history.chosen(opened, ["TOP"])
         (axes,) = history.picture(opened, top, ["temperature"]).axes
+        (over_load,) = history.picture(opened, top, ["temperature"], "load").axes
     assert (axes.get_xlabel(), axes.get_ylabel()) == ("Time (s)", "Temperature (\N{DEGREE SIGN}C)")
+    assert over_load.get_xlabel() == "Temperature of node set TOP (\N{DEGREE SIGN}C)"
     assert report([str(path), "--out", str(tmp_path)]) == 0
     (chart,) = [each for each in page_data(tmp_path / "case.html")["history"] if "curves" in each]
     assert chart["unit"] == "\N{DEGREE SIGN}C"

@@ -1,5 +1,6 @@
 """Interfaces that a pattern means are drawn as one, along a common coordinate."""
 
+import re
 import sys
 from pathlib import Path
 
@@ -10,11 +11,12 @@ import pytest
 TESTS = Path(__file__).resolve().parents[1]
 sys.path[:0] = [str(TESTS / "decks"), str(TESTS.parent / "python")]
 
-from blocks import write  # noqa: E402
+from blocks import without_unused_surfaces, write  # noqa: E402
 from matplotlib.collections import QuadMesh  # noqa: E402
 from comparing import coarse_pictures  # noqa: E402, F401  fixture
-from deck_runs import solve  # noqa: E402
+from deck_runs import solve, solve_as_written  # noqa: E402
 from pellets import rod  # noqa: E402
+from physics import material, mesh  # noqa: E402
 from synthetic import write_result  # noqa: E402
 
 from thercon.post import profiles, style, zones  # noqa: E402
@@ -92,7 +94,9 @@ def test_places_are_joined_and_forces_summed_with_as_many_increments_as_contact_
 @pytest.mark.parametrize("picture", ["zones", "profiles", "courses"])
 def test_pictures_are_drawn_with_as_many_increments_as_contact_points(tmp_path, picture):
     path = write_stack(tmp_path / "stack.vtkhdf", ("A1", "A2"), columns=7)
-    assert plot([picture, str(path), "--contact", "A*", "--out", str(tmp_path), "--csv"]) == 0
+    for pattern, word in (("A*", "A_"), ("*", "all")):
+        assert plot([picture, str(path), "--contact", pattern, "--out", str(tmp_path), "--csv"]) == 0
+        assert (tmp_path / f"stack.{picture}-{word}.png").exists()
 
 
 def zone_picture(result, *options, pattern="*"):
@@ -229,6 +233,27 @@ def test_tables_of_more_than_six_interfaces_are_folded(tmp_path, count):
     assert words.count("<table>") == count
     opened = f"<details><summary>{count} interfaces at the last increment</summary>"
     assert words.startswith(opened) == (count > 6)
+
+
+@pytest.mark.parametrize("count", [6, 7])
+def test_tables_of_more_than_six_bodies_are_folded_and_tell_their_sets(tmp_path, count):
+    """Tied blocks of one material; the last two are of one set, of which one alone has the first element."""
+    names = [f"S{min(k, count - 2)}" for k in range(count)]
+    cards = [card for k, name in enumerate(names)
+             for card in mesh(f"B{k}", [0.0, 1.0], [k, k + 1.0], "DC2D4", first=10 * k + 1)]
+    for name in dict.fromkeys(names):
+        cards += [f"*Elset, ELSET={name}", *(f"{10 * k + 1}," for k in range(count) if names[k] == name)]
+    cards += material(names[0], elastic=None, conductivity=50.0)
+    cards += [f"*SOLID SECTION, MATERIAL={names[0]}, ELSET={name}" for name in sorted({*names} - {names[0]})]
+    cards += [card for k in range(1, count) for card in (f"*TIE, NAME=T{k}", f"B{k}.BOTTOM, B{k - 1}.TOP")]
+    cards += ["*STEP", "*HEAT TRANSFER, STEADY STATE", "1., 1.", "*BOUNDARY", "B0.BOTTOM, 11, 11, 20.",
+              f"B{count - 1}.TOP, 11, 11, 100.", "*END STEP"]
+    with Result(solve_as_written(write(tmp_path / "deck.inp", without_unused_surfaces(cards)))) as one:
+        words = uncertainties(one)
+    opened = f"<details><summary>{count} bodies at the last increment</summary>"
+    assert (opened in words) == (count > 6)
+    assert re.findall(r"<caption>Body (.*?) at the last", words) == [
+        *(f"{k + 1} (S{k}, of S0)" for k in range(count - 1)), f"{count} (of S0)"]
 
 
 def test_zones_end_at_the_last_increment(result):

@@ -286,6 +286,33 @@ def test_courses_are_means_and_ranges_over_the_face_and_the_rates_of_the_model(d
     assert np.isnan(numbers(drawn["heat_stored"])[0])
 
 
+def test_legends_of_courses_hide_no_curve_and_no_title(laid_out, result):
+    with h5py.File(result, "r+") as file:
+        for k, name in enumerate(("in", "friction", "out", "stored", "dilatation")):
+            file[f"history/heat_{name}"] = np.linspace(k, 1.0, len(file["history/time"]))
+    (figure,) = laid_out("courses", result)
+    (axes,) = [each for each in figure.axes if each.get_legend()]
+    box, frame, title = (each.get_window_extent() for each in (axes.get_legend(), axes, axes._left_title))
+    assert box.y0 >= frame.y1 - 5.0 and box.x0 > title.x1 and box.x1 < figure.bbox.x1
+
+
+def test_pictures_may_share_a_range_of_values(kept, tabulate, fail, result):
+    (figure,) = kept("profiles", result, "--values", "heat_flux", "-1", "2", "--values", "pressure", 0, 500)
+    assert [axes.get_ylim() for axes in figure.axes] == [(0.0, 500.0), (-1.0, 2.0)]
+    written = tabulate("profiles", result, "--values", "pressure", 0, 500)
+    assert written == three("case.profiles-pressure-0-500")
+    assert "no panel shows 'presure', nearest: 'pressure'" in fail(
+        "profiles", result, "--values", "presure", 0, 500)
+    for ends in ((5, 0), (0, "x"), (1, 1), (0, "nan")):
+        assert "is no range from LOW to HIGH" in fail("profiles", result, "--values", "pressure", *ends)
+
+
+def test_two_dozen_bodies_have_tints_of_their_own():
+    tints = np.array([style.body_tint(k) for k in range(24)])
+    apart = [np.abs(one - other).max() for k, one in enumerate(tints) for other in tints[:k]]
+    assert min(apart) > 0.02 and tints.min() > 0.1
+
+
 def test_bands_are_told_where_they_are_seen(kept, result):
     def words():
         (figure,) = kept("courses", result)
@@ -1340,6 +1367,10 @@ def test_convergence_holds_every_iteration_and_marks_what_failed(draw, monkeypat
         outcome[int(increment), int(attempt)] = kind
     accepted = {(increment, 1): "accepted" for increment in (1, 2, 3)}
     assert outcome == accepted | {(4, 1): "cut back", (4, 2): "failed"}
+    with h5py.File(picard, "r+") as file:   # as if the two were stages of one try
+        file["convergence/cut_backs"][...] = 0
+    assert draw("convergence", picard) == three("picard.convergence")
+    assert set(table(tmp_path, "picard.convergence.csv")["outcome"]) == {"accepted", "failed"}
     monkeypatch.setattr(Figure, "savefig", lambda self, path, **options: path.write_text("not rendered"))
     assert draw("convergence", picard, good) == three("picard.convergence-good")
     both = table(tmp_path, "picard.convergence-good.csv")
@@ -1463,8 +1494,10 @@ def test_times_have_the_unit_of_the_deck(kept, result):
         assert Units({"time": "s"}).load_label("time") == "Time (s)"
         assert Units({"time": "s"}).short_load("time", 5.0) == "5 s"
         assert Units({}).short_load("time", 5.0) == "time 5"
-    (figure,) = kept("courses", result)
-    assert {axes.get_xlabel() for axes in figure.axes if axes.get_visible()} == {"", "Time (s)"}
+    for over, label in (((), "Temperature of node set TOP (\N{DEGREE SIGN}C)"), (("--over", "time"), "Time (s)"),
+                        (("--log",), "Time (s)")):
+        (figure,) = kept("courses", result, *over)
+        assert {axes.get_xlabel() for axes in figure.axes if axes.get_visible()} == {"", label}
 
 
 def test_forces_are_newtons_where_units_are_those_of_newtons():

@@ -740,6 +740,23 @@ def test_every_increment_shows_its_own_uncertainties(uncertain, browser):
             assert bars.count("M") == len(times)
 
 
+def test_bars_of_uncertainty_end_within_the_frame(uncertain, browser, tmp_path):
+    """Also one twice as large as the value."""
+    path, _ = uncertain
+    copy = shutil.copy(path, tmp_path)
+    with h5py.File(copy, "r+") as file:
+        rows = file["uncertainty/FACE/normal_force"]
+        rows[:, 1] = 2.0 * rows[:, 0]
+    assert main([str(copy), "--out", str(tmp_path)]) == 0
+    browser.open(tmp_path / "cylinder.html")
+    frame, bars = browser.run("""const box = document.querySelector('#history-0');
+        const frame = box.querySelector('clipPath rect');
+        return [[+frame.getAttribute('y'), +frame.getAttribute('height')],
+            box.querySelector('.uncertainty').getAttribute('d')]""")
+    ends = [float(y) for y in re.findall(r"[ V]([-\d.]+)", bars)]
+    assert len(ends) >= 2 and frame[0] < min(ends) < max(ends) < sum(frame)
+
+
 def test_results_of_earlier_versions_have_their_uncertainties(uncertain, tmp_path):
     """These name the group and its columns otherwise."""
     path, is_full = uncertain

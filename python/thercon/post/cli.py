@@ -40,6 +40,16 @@ class Parser(argparse.ArgumentParser):
         raise UserError(f"{message} (see `{self.prog} --help`)")
 
 
+class Values(argparse.Action):
+    """Collects a quantity and the range of its values each time."""
+
+    def __call__(self, parser, namespace, words, option=None):
+        """Add the three words, two of which are numbers."""
+        if not all(map(is_number, words[1:])) or not float(words[1]) < float(words[2]):
+            parser.error(f"argument {option}: {' '.join(words[1:])} is no range from LOW to HIGH")
+        setattr(namespace, self.dest, [*getattr(namespace, self.dest), (words[0], *map(float, words[1:]))])
+
+
 def parser():
     """Return the parser of the whole command line."""
     top = Parser(
@@ -52,7 +62,7 @@ def parser():
         "profiles": ("pressure, friction, mu p and heat flux along the contact", WITH_PROFILES),
         "zones": ("open, slip and stick against the load", WITH_ZONES),
         "fields": ("temperature and stress on the deformed mesh", None),
-        "courses": ("pressure, gap, temperatures and heat over time", None),
+        "courses": ("pressure, force, gap, temperatures and heat over time, or over the load", None),
         "history": ("nodes and elements of *NODE PRINT and *EL PRINT over time, or over the load", None),
         "branch": ("a quantity over the load factor of *CONTINUATION, unstable parts dashed", None),
         "accuracy": ("uncertainties of a requested accuracy against the cost of its rounds", None),
@@ -76,6 +86,11 @@ def parser():
     added["profiles"].add_argument(
         "--range", nargs=2, type=float, metavar=("FROM", "TO"), help="range of the abscissa"
     )
+    added["profiles"].add_argument(
+        "--values", nargs=3, action=Values, default=[], metavar=("QUANTITY", "LOW", "HIGH"),
+        help="range of the values of a panel, such as pressure 0 300, the same in several pictures; may "
+        "be given for several",
+    )
     add_fields(added["fields"])
     add_name(added["courses"])
     added["history"].add_argument(
@@ -93,6 +108,12 @@ def parser():
         metavar="QUANTITY",
         help="of /contact/NAME, or peak_pressure (default: heat_rate)",
     )
+    for name in ("courses", "history"):
+        added[name].add_argument(
+            "--over", choices=("time", "load"), help="axis of the curves: time, or the load of *OPTIONS, "
+            "LOAD=, such as a prescribed displacement (default: time where heat is stored or the load "
+            "turns, else the load)",
+        )
     for name, axis in (("zones", "load, or of the time where it turns"), ("courses", "time")):
         added[name].add_argument("--log", action="store_true", help=f"logarithmic axis of the {axis}")
     return top

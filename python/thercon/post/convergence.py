@@ -21,7 +21,7 @@ KINDS = {
 
 @dataclass
 class Attempt:
-    """One try at an increment: its rows of /convergence."""
+    """One solve of an increment, of its stages and tries: its rows of /convergence."""
 
     increment: int
     number: int
@@ -30,27 +30,27 @@ class Attempt:
 
 
 class Run:
-    """The iterations of one result, split into tries."""
+    """The iterations of one result, split into solves."""
 
     def __init__(self, result):
         self.result = result
         self.data = result.convergence
         increment, iteration = self.data["increment"], self.data["iteration"]
+        cut_backs = self.data.get("cut_backs", np.zeros(len(increment)))
         new = (np.diff(increment) != 0) | (np.diff(iteration) <= 0)
         self.attempts, count = [], {}
+        last = dict(zip(increment.tolist(), cut_backs.tolist()))
         for rows in np.split(np.arange(len(increment)), np.flatnonzero(new) + 1):
             at = int(increment[rows[0]])
             count[at] = count.get(at, 0) + 1
             kind = "accepted" if at <= result.increments else "failed"
+            kind = "cut back" if cut_backs[rows[0]] < last[at] else kind
             self.attempts.append(Attempt(at, count[at], kind, rows))
-        for attempt in self.attempts:
-            if attempt.number < count[attempt.increment]:
-                attempt.kind = "cut back"
         accepted = self.of_kind("accepted")
         self.slowest = max(accepted, key=lambda attempt: len(attempt.rows), default=None)
 
     def of_kind(self, kind):
-        """Return the tries of one kind."""
+        """Return the solves of one kind."""
         return [attempt for attempt in self.attempts if attempt.kind == kind]
 
     def table(self):
@@ -102,13 +102,13 @@ def draw(results, options):
 
 
 def draw_residuals(figure, place, run, first):
-    """Draw residual against iteration, a line for each try; return the axes that set the scale."""
+    """Draw residual against iteration, a line for each solve; return the axes that set the scale."""
     axes = figure.add_subplot(place, sharey=first, sharex=first)
     for attempt in run.attempts:
         looks = KINDS["slowest" if attempt is run.slowest else attempt.kind]
         residual = np.maximum(run.data["residual"][attempt.rows], SMALLEST)
         axes.semilogy(run.data["iteration"][attempt.rows], residual, **looks)
-    axes.set_xlabel("Iteration")
+    axes.set_xlabel("Iteration of a solve")
     axes.xaxis.set_major_locator(whole_numbers())
     axes.yaxis.set_major_locator(LogLocator(numticks=9))
     axes.yaxis.set_minor_formatter(NullFormatter())
@@ -121,23 +121,23 @@ def draw_residuals(figure, place, run, first):
 
 
 def residual_handles(run):
-    """Return the legend's entries for the kinds of tries that are there."""
+    """Return the legend's entries for the kinds of solves that are there."""
     handles = []
     if len(run.of_kind("accepted")) > 1:
-        handles.append(Line2D([], [], label="accepted increments", **KINDS["accepted"]))
+        handles.append(Line2D([], [], label="solves of accepted increments", **KINDS["accepted"]))
     if run.slowest:
-        label = f"increment {run.slowest.increment} (none has more iterations)"
+        label = f"the longest, in increment {run.slowest.increment}"
         handles.append(Line2D([], [], label=label, **KINDS["slowest"]))
     if run.of_kind("cut back"):
         handles.append(Line2D([], [], label="ended by cut-back", **KINDS["cut back"]))
-    for attempt in run.of_kind("failed"):
-        label = f"increment {attempt.increment} (not converged)"
+    for increment in sorted({attempt.increment for attempt in run.of_kind("failed")}):
+        label = f"increment {increment} (not converged)"
         handles.append(Line2D([], [], label=label, **KINDS["failed"]))
     return handles
 
 
 def draw_counts(axes, run, number, shift):
-    """Draw the iterations of each increment, all tries together; mark those that failed."""
+    """Draw the iterations of each increment, all solves together; mark those that failed."""
     looks = series_looks(number)
     increments = np.unique([attempt.increment for attempt in run.attempts])
     spent = np.array([np.sum(run.data["increment"] == at) for at in increments])
@@ -147,7 +147,7 @@ def draw_counts(axes, run, number, shift):
 
 
 def draw_relaxation(axes, run, number, shift):
-    """Draw the range of g over the last try at each increment."""
+    """Draw the range of g over the last solve of each increment."""
     last = {attempt.increment: attempt for attempt in run.attempts}
     at = np.array(sorted(last))
     low = np.array([np.min(run.data["g_min"][last[k].rows]) for k in at])
@@ -176,7 +176,7 @@ def series_looks(number):
 
 def finish(counts, relaxation, runs):
     """Label and scale the two lower panels."""
-    counts.set_ylabel("Iterations")
+    counts.set_ylabel("Iterations of all solves")
     most = max(np.unique(run.data["increment"], return_counts=True)[1].max() for run in runs)
     counts.set_ylim(0, 1.12 * most)
     counts.tick_params(labelbottom=False)

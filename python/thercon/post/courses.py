@@ -1,4 +1,4 @@
-"""Courses over time: pressure, gap and temperatures of the faces, heat of the whole model."""
+"""Courses over time or load: pressure, gap and temperatures of the faces, heat of the whole model."""
 
 import numpy as np
 
@@ -24,6 +24,8 @@ DECADES = 1e-3  # of the largest heat rate, the smallest that a logarithmic axis
 ORDER = {"master": 1, "out of it": 1, "stored": 2, "through the contact": 3,
          "sum over the interfaces": 3,
          "taken up by strains": 4, "of friction": 5}
+RIGHT_ABOVE = {"loc": "lower right", "bbox_to_anchor": (1.02, 0.98)}  # on curves it would hide them
+COLUMNS, LEGEND_LINE = 2, 0.14  # of a legend; height of a line of it, in inches
 NOTHING = 1e-6  # of the largest of a panel: curves below it are not drawn
 LOOKS = [  # dashes show what lies below them
     (style.BLACK, "-"),
@@ -39,9 +41,10 @@ def draw(result, options):
     """Draw the courses of every contact asked for; return the files written."""
     written = []
     for contact in result.contacts(options.contact):
-        picture = Picture(result, contact, options.log)
+        picture = Picture(result, contact, options.log, options.over)
         parts = [contact.name] if len(result.contact_names) > 1 else []
-        name = style.file_name(result, "courses", *parts, *(["log"] if options.log else []))
+        parts += ["log"] * options.log + (["over", options.over] if options.over else [])
+        name = style.file_name(result, "courses", *parts)
         written += style.write(picture.draw(), picture.table(), options, name)
     return written
 
@@ -49,11 +52,11 @@ def draw(result, options):
 class Picture:
     """The courses of one contact and of the model."""
 
-    def __init__(self, result, contact, log=False):
+    def __init__(self, result, contact, log=False, over=None):
         if result.increments == 0:
             raise UserError(f"{result.path}: holds no accepted increment")
         self.result, self.contact, self.log = result, contact, log
-        self.time = result.history["time"]
+        self.label, self.at = result.abscissa(over or ("time" if log else None))
         self.panels = self.present()
 
     def present(self):
@@ -73,12 +76,14 @@ class Picture:
         return {name: curves for name, curves in panels.items() if curves}
 
     def draw(self):
-        """Return the finished figure: two panels a row, one time axis."""
+        """Return the finished figure: two panels a row, one axis of time or load."""
         rows = -(-len(self.panels) // 2)
         columns = min(2, len(self.panels))
+        legends = [-(-len(curves) // COLUMNS) * (len(curves) > 1) for curves in self.panels.values()]
+        above = sum(max(legends[row : row + 2]) for row in range(0, len(legends), 2))
         figure, grid = plt.subplots(
             rows, columns, sharex=True, layout="constrained", squeeze=False,
-            figsize=(style.DOUBLE_COLUMN * 0.5 * columns, 0.4 + 2.1 * rows),
+            figsize=(style.DOUBLE_COLUMN * 0.5 * columns, 0.4 + 2.1 * rows + LEGEND_LINE * above),
         )
         for axes, (name, curves), letter in zip(grid.flat, self.panels.items(), "abcde"):
             if name == "heat" and self.log:
@@ -87,17 +92,17 @@ class Picture:
             self.draw_panel(axes, curves)
             words, quantity = LABELS[name]
             axes.set_ylabel(self.result.units.label(words, quantity))
-            style.mark_judged(axes, self.time, self.result.judged)
+            style.mark_judged(axes, self.at, self.result.judged)
             style.panel_title(axes, "", letter)
         for axes in grid.flat[len(self.panels):]:
             axes.set_visible(False)
         for column in range(columns):
             lowest = [row for row in range(rows) if grid[row, column].get_visible()][-1]
-            grid[lowest, column].set_xlabel(self.result.units.label("Time", "time"))
+            grid[lowest, column].set_xlabel(self.label)
             grid[lowest, column].tick_params(labelbottom=True)
-        first = self.time[self.time > 0.0].min(initial=self.time[-1])
-        if self.log and first < self.time[-1]:
-            style.log_abscissa(grid[0, 0], first, self.time[-1])
+        first = self.at[self.at > 0.0].min(initial=self.at[-1])
+        if self.log and first < self.at[-1]:
+            style.log_abscissa(grid[0, 0], first, self.at[-1])
         words = [self.words_below(), "" if self.result.judged.all() else MARKED]
         figure.supxlabel("\n".join(filter(None, words)), fontsize=8.5)
         return figure
@@ -116,10 +121,10 @@ class Picture:
         for words, values in curves:
             colour, line = LOOKS[ORDER.get(words.strip("|\N{MINUS SIGN}"), 0)]
             if values.ndim == 2:
-                axes.fill_between(self.time, *ends(values), color=colour, alpha=0.15, linewidth=0)
-            axes.plot(self.time, self.mean(values), color=colour, ls=line, label=words or None)
+                axes.fill_between(self.at, *ends(values), color=colour, alpha=0.15, linewidth=0)
+            axes.plot(self.at, self.mean(values), color=colour, ls=line, label=words or None)
         if len(curves) > 1:
-            axes.legend(loc="best", handlelength=1.8)
+            axes.legend(**RIGHT_ABOVE, ncols=COLUMNS, handlelength=1.8, columnspacing=1.2)
         low, high = axes.get_ylim()
         if low < 0.0 and all(np.nanmin(values) >= -1e-6 * high for _, values in curves):
             axes.set_ylim(0.0, high)
@@ -143,7 +148,8 @@ class Picture:
 
     def table(self):
         """Return the curves as columns, means and ranges over the face."""
-        columns = {"increment": np.arange(1, len(self.time) + 1), "time": self.time}
+        columns = {"increment": np.arange(1, len(self.at) + 1)}
+        columns |= {key: self.result.history[key] for key in ("time", "load")}
         for name, curves in self.panels.items():
             for words, values in curves:
                 key = "_".join([name, *words.split()])

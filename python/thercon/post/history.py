@@ -26,8 +26,10 @@ def draw(result, options):
             continue
         parts = [each.name] if len(found) > 1 or options.set else []
         parts += [each.kind] if len(kinds[each.name]) > 1 else []
-        name = style.file_name(result, "history", *parts, *wanted)
-        written += style.write(picture(result, each, keys), table(result, each, keys), options, name)
+        parts += wanted + (["over", options.over] if options.over else [])
+        figure = picture(result, each, keys, options.over)
+        name = style.file_name(result, "history", *parts)
+        written += style.write(figure, table(result, each, keys), options, name)
     return written
 
 
@@ -42,24 +44,15 @@ def chosen_quantities(result, found, wanted):
     return names
 
 
-def abscissa(result, history):
-    """Return name and values of the abscissa: time where heat is stored or the load turns, else the
-    load."""
-    load = result.history["load"][history.increment - 1]
-    rises = np.all(np.diff(load) > 0.0) or np.all(np.diff(load) < 0.0)
-    if "heat_stored" in result.history or not rises:
-        return result.units.label("Time", "time"), history.time
-    return result.units.load_label(result.load_label), load
-
-
-def picture(result, history, keys):
+def picture(result, history, keys, over=None):
     """Return the figure of a set: a panel for each quantity."""
     columns = min(2, len(keys))
     rows = -(-len(keys) // columns)
     figure, grid = plt.subplots(
         rows, columns, sharex=True, layout="constrained", squeeze=False,
         figsize=(style.DOUBLE_COLUMN * (0.5 if columns == 2 else 0.62) * columns, 0.4 + 2.1 * rows))
-    words, at = abscissa(result, history)
+    words, at = result.abscissa(over)
+    at = at[history.increment - 1]
     ranges = False
     for number, (axes, key) in enumerate(zip(grid.flat, keys)):
         ranges |= panel(axes, at, history, key)

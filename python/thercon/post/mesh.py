@@ -123,9 +123,7 @@ def draw_elements(axes, cells, close):
     names = body_names(cells)
     width = float(np.clip((16.0 if close else 6.0) / np.sqrt(cells.count), 0.12, 0.45))
     for kind, group in cells.groups.items():
-        tints = [
-            style.BODY_TINTS[names.index(b) % len(style.BODY_TINTS)] for b in cells.bodies[kind]
-        ]
+        tints = [style.body_tint(names.index(b)) for b in cells.bodies[kind]]
         shapes = outlines(kind, group, cells.points)
         axes.add_collection(
             PolyCollection(shapes, facecolors=tints, edgecolors="#555555", linewidths=width)
@@ -183,7 +181,7 @@ def legend_handles(cells, contacts, lines):
     faces; of a drawing no master face is marked."""
     handles = [
         Patch(
-            facecolor=style.BODY_TINTS[k % len(style.BODY_TINTS)],
+            facecolor=style.body_tint(k),
             edgecolor="#555555",
             label=f"body {name}",
         )

@@ -5,7 +5,7 @@ import numpy as np
 from . import profile_legends, style
 from .overlay import axis_words, file_parts, read_overlays
 from .profile_legends import EDGES, QUANTITY_LINES, SECOND
-from .errors import UserError
+from .errors import UserError, nearest_name
 from .result import OPEN, UNJUDGED
 from .style import plt
 from .tables import stack_tables
@@ -33,6 +33,7 @@ def draw(result, options):
         parts += axis_words(options.along)
         if options.range:
             parts += ["range", *options.range]
+        parts += [word for each in options.values for word in each]
         name = style.file_name(result, "profiles", *parts, *file_parts(options.figures))
         written += style.write(figure, table(result, contact, rows), options, name)
     return written
@@ -53,6 +54,12 @@ class Picture:
         self.window = options.range or self.find_window()
         self.colours = style.shades(len(contact.parts) if self.overlap else len(rows))
         self.sign = friction_sign(contact, rows)
+        self.ranges = options.values
+        drawn = [name for kind in self.panel_kinds() for name in kind]
+        for name, *_ in self.ranges:
+            if name not in drawn:
+                raise UserError(f"no panel shows '{name}'{nearest_name(name, drawn)}: there are "
+                                f"{', '.join(drawn)}")
 
     def at(self, row):
         """Return where the contact points are: those that follow sliding on the displaced face."""
@@ -88,6 +95,10 @@ class Picture:
                     drawn.append(overlay.plot(axes, self.along, quantity, line, magnitude=size))
             axes.set_ylabel(self.ordinate(quantities))
             scale(axes, np.concatenate(drawn), from_zero=quantities[0] not in FACES)
+            for name, low, high in self.ranges:
+                if name in quantities:
+                    axes.set(ylim=(low, high))
+                    plt.setp(axes.lines, clip_on=True)
         profile_legends.add(self, panels, kinds, overlays)
         units = self.result.units
         unit = units.names.get("length", "")

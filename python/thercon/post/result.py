@@ -327,6 +327,15 @@ class Result:
         label = text(self.file["history"]["load"].attrs.get("label", "load"))
         return label.replace("$", "")  # which begins a formula in a picture
 
+    def abscissa(self, over=None):
+        """Return label and values, one an increment, of the axis that curves over the run have: time or
+        load; where `over` is neither, time where heat is stored or the load turns, else the load."""
+        load = self.history["load"]
+        rises = np.all(np.diff(load) > 0.0) or np.all(np.diff(load) < 0.0)
+        if over == "time" or over is None and ("heat_stored" in self.history or not rises):
+            return self.units.label("Time", "time"), self.history["time"]
+        return self.units.load_label(self.load_label), load
+
     @property
     def increments(self):
         """Number of accepted increments."""

@@ -21,7 +21,10 @@ BLACK, BLUE, VERMILION, GREY = "#000000", "#0072B2", "#D55E00", "#8C8C8C"
 ORANGE, GREEN, SKY = "#E69F00", "#009E73", "#56B4E9"
 SERIES = [BLACK, VERMILION, BLUE, GREEN, ORANGE, SKY]
 MARKERS = ["o", "s", "^", "D", "v", "P"]
-BODY_TINTS = ["#F6E3D0", "#DCE8F2", "#E4EEDC", "#EFE2EE", "#F5F0D0", "#E6E6E6"]
+TINTS = ["#F6E3D0", "#DCE8F2", "#E4EEDC", "#EFE2EE", "#F5F0D0", "#E6E6E6"]
+
+DEEPER = 1.8  # by which the power of the tints grows with each further round of bodies that takes them
+ROUNDS = 4  # of bodies before tints repeat
 
 # Places of legends outside the figure, which is written with all that it has.
 BELOW = {"loc": "upper center", "bbox_to_anchor": (0.5, 0.0)}
@@ -93,6 +96,7 @@ def write(figure, columns, options, name):
 def file_name(result, picture, *parts):
     """Return the file name NAME.picture-part-part without its ending."""
     words = [f"{part:g}" if isinstance(part, (int, float)) else str(part) for part in parts]
+    words = ["all" if word == "*" else word for word in words]
     safe = ["".join(c if c.isalnum() or c in "._+-" else "_" for c in word) for word in words]
     return f"{result.name}.{'-'.join([picture, *safe])}"
 
@@ -112,6 +116,12 @@ def shades(count):
     if count == 1:
         return [BLACK]
     return [matplotlib.colormaps["viridis"](t) for t in np.linspace(0.72, 0.0, count)]
+
+
+def body_tint(number):
+    """Return the tint of the body with this number, from 0: further ones take the same hues deeper."""
+    colour = np.array(matplotlib.colors.to_rgb(TINTS[number % len(TINTS)]))
+    return tuple(colour ** (1.0 + DEEPER * (number // len(TINTS) % ROUNDS)))
 
 
 def log_ticks(axis, low, high):

@@ -286,6 +286,8 @@ function branchLines(y) {
 const SERIES = [INK, BLUE, VERMILION, '#009e73', '#e69f00', '#56b4e9'];
 const setLines = ({at, curves}, along) => curves.map(({name, values}, n) => ({name, colour: SERIES[n],
    x: at.map(k => along[k]), y: values.map(v => v === null ? NaN : v), mark: at.length <= 60}));
+// Ends of the bars of uncertainty.
+const ends = (y, off) => y.flatMap((v, k) => Number.isFinite(off[k]) ? [v - off[k], v + off[k]] : []);
 function drawHistories() {
    const along = data.branch ? data.branch.factor : abscissa;
    const low = Math.min(...along), high = Math.max(...along), room = 0.03 * (high - low) || 0.5;
@@ -297,7 +299,8 @@ function drawHistories() {
       chart($(`history-${k}`), {
          width: 360, height: 200, title: `${each.label} over the load`,
          xLabel: data.branch ? 'Load factor' : data.load.axis, xRange: [low - room, high + room],
-         yLabel: each.unit, yRange: rangeOf(sets ? sets.flatMap(line => line.y) : y, true), uprights: [along[row]],
+         yLabel: each.unit, yRange: rangeOf(sets ? sets.flatMap(line => line.y) : [...y, ...ends(y, each.uncertainty)], true),
+         uprights: [along[row]],
          lines: sets || (data.branch ? branchLines(y) : [{x: abscissa, y, off: each.uncertainty, colour: BLUE, mark: count <= 60}]),
          caption: html`${each.label}: <b>${show(y[row])}</b>${within(each, row)} ${each.unit}`,
       });

@@ -6,6 +6,7 @@ import numpy as np
 
 from ..result import ANALYSIS, NO_ANALYSIS, NO_FINER_VALUE, text, words_of
 from ..units import unit_of
+from ..body_names import body_names
 from .data import contacts_of, plain
 from .html import html, joined
 
@@ -96,20 +97,24 @@ def uncertainties(result):
             rows.append([words_of(key) + (", s" if key.startswith("edge_") else ""), number(value), *cells])
         found.append(uncertainty_table(f"Interface {contact.name} {said}", known, rows))
     found = [folded(found, f"{len(found)} interfaces {said}")] if len(found) > MOST_OPEN else found
-    largest = f"{said}, stress away from singular corners"
-    others = {f"{name.capitalize()} {largest}": known for name, known in result.maxima.items()}
-    others[f"Heat of the model {said}"] = result.uncertainties("increment")
-    for caption, known in others.items():
-        rows = [[LARGEST.get(key, words_of(key)), number(each[-1, 0]),
-                 *uncertainty_cells(each, why, unit_of(unit))]
-                for key, (unit, _, each, why) in known.items() if np.nan_to_num(each[-1, 0])]
-        if rows:
-            found.append(uncertainty_table(caption, known, rows))
-    return joined(found)
+    largest, names = f"{said}, stress away from singular corners", body_names(result)
+    bodies = [values_table(f"{name.capitalize()}{names.get(int(name[5:]), '')} {largest}", known)
+              for name, known in result.maxima.items()]
+    bodies = list(filter(None, bodies))
+    found += [folded(bodies, f"{len(bodies)} bodies {said}")] if len(bodies) > MOST_OPEN else bodies
+    heat = values_table(f"Heat of the model {said}", result.uncertainties("increment"))
+    return joined([*found, heat])
+
+
+def values_table(caption, known):
+    """Return the table of what is known at the last increment; nothing where that is nothing."""
+    rows = [[LARGEST.get(key, words_of(key)), number(each[-1, 0]), *uncertainty_cells(each, why, unit_of(unit))]
+            for key, (unit, _, each, why) in known.items() if np.nan_to_num(each[-1, 0])]
+    return uncertainty_table(caption, known, rows) if rows else ""
 
 
 NO_PARTS = "–", "–", "–"
-MOST_OPEN = 6  # tables of interfaces; more are folded, so that pictures are near
+MOST_OPEN = 6  # tables of interfaces, or of bodies; more are folded, so that pictures are near
 
 
 def folded(parts, words):
