@@ -8,8 +8,8 @@ module unit_labels
 
 contains
 
-   !> The unit of a quantity in print, such as `MPa cm^2` for `stress length^2`, N where that is one;
-   !> empty where the deck has no labels, '-' for a pure number. Words that it has no label for stay.
+   !> The unit of a quantity in print, such as `MPa cm^2` for `stress length^2`, N where that is
+   !> one; empty where the deck has no labels, '-' for a pure number. Words without a label stay.
    pure function unit_label(unit, labels) result(words)
       character(*), intent(in) :: unit                  !! unit of quantity_type
       type(unit_labels_type), intent(in) :: labels      !! those of the deck
@@ -22,7 +22,8 @@ contains
       if (words == 'MPa mm^2' .or. words == 'Pa m^2') words = 'N'
    end function unit_label
 
-   !> The unit in files, forces as stress times area; where the deck has no labels, what is measured.
+   !> The unit in files, forces as stress times area; where the deck has no labels, what is
+   !> measured.
    pure function unit_in_words(unit, labels) result(words)
       character(*), intent(in) :: unit                  !! unit of quantity_type
       type(unit_labels_type), intent(in) :: labels      !! those of the deck

@@ -62,9 +62,9 @@ module field_quantities
       quantity_type('heat_flux', of_points, 'power/length^2', needs_heat, values=3, &
       description='heat flux, averaged per body and section', components='x y z'), &
       quantity_type('mode_temperature', of_points, '-', needs_stability, &
-      description='temperature of the fastest small motion, the largest 1'), &
+      description='temperature of the leading mode, the largest 1'), &
       quantity_type('mode_displacement', of_points, 'length/temperature', needs_stability, &
-      values=3, description='displacement of the fastest small motion', components='x y z'), &
+      values=3, description='displacement of the leading mode', components='x y z'), &
       quantity_type('stress_error', of_elements, 'stress', needs_mechanics, &
       description='estimated error of the stress by the mesh, rms in the element'), &
       quantity_type('heat_flux_error', of_elements, 'power/length^2', needs_heat, &

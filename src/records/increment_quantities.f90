@@ -73,11 +73,11 @@ module increment_quantities
       quantity_type('certain', of_history, '-', needs_stability, is_integer=.true., &
       description='1 where both ways of counting agree and nothing is left out, else 0'), &
       quantity_type('growth_rate', of_history, '1/time', needs_stability, &
-      description='rate of the fastest one, of the slowest to decay where none grows'), &
+      description='rate of the leading mode: the fastest to grow, or the slowest to decay'), &
       quantity_type('period', of_history, 'time', needs_stability, &
       description='period of its oscillation, 0 without one'), &
       quantity_type('growth_rates', of_motions, '1/time', needs_stability, &
-      description='rates of the leading motions, the fastest first; a pair that oscillates once'), &
+      description='rates of the leading modes, the fastest first; a pair that oscillates once'), &
       quantity_type('periods', of_motions, 'time', needs_stability, &
       description='periods of their oscillations, 0 without one'), &
       quantity_type('load_factor', of_history, '-', needs_branch, label='load factor', &

@@ -103,18 +103,18 @@ module records
       !> (10, points) plastic strain xx, yy, zz, the angle xy and the equivalent one, then those of
       !> creep; unallocated without laws and where nothing needs it
       real(dp), allocatable :: inelastic_strain(:, :)
-      ! Of the fastest small motion, where stability is analysed.
+      ! Of the leading mode, where stability is analysed.
       real(dp), allocatable :: mode_temperature(:)      !! (nodes) the largest 1
       real(dp), allocatable :: mode_displacement(:, :)  !! (2, nodes) [length/temperature]
    end type field_record_type
 
    !> Small motions of a state in time.
    type :: stability_record_type
-      logical :: is_known = .false.                 !! whether a fastest motion was found
+      logical :: is_known = .false.                 !! whether a leading mode was found
       integer :: unstable_modes = 0                 !! motions that grow
-      real(dp) :: growth_rate = 0.0_dp              !! of the fastest, negative: it decays [1/time]
+      real(dp) :: growth_rate = 0.0_dp              !! of it, negative: it decays [1/time]
       real(dp) :: period = 0.0_dp                   !! of its oscillation, 0 without one [time]
-      !> (2, motions) both of the fastest ones, the fastest first; unallocated where none was found
+      !> (2, motions) both of the leading modes, the fastest first; unallocated where none was found
       real(dp), allocatable :: leading(:, :)
       character(:), allocatable :: doubt            !! why it is uncertain; unallocated: it is not
    contains

@@ -21,7 +21,7 @@ OPEN, SLIP, STICK = 0, 1, 2
 # Columns of the VTKHDF arrays with several components: picture quantity -> array, component.
 # Those of CELL_FIELDS have one number an element, the others one a point.
 CELL_FIELDS = ("stress_error", "heat_flux_error")
-MODE = "mode_temperature"  # of the fastest small motion, with mode_displacement
+MODE = "mode_temperature"  # of the leading mode, with mode_displacement
 FIELD_SOURCES = {
     "temperature": ("temperature", None),
     "von_mises": ("von_mises", None),

@@ -45,8 +45,9 @@ contains
       do inner = 1, size(box, 2)
          do outer = 1, size(box, 2)
             if (outer == inner .or. is_told(outer)) cycle
-            if (any(box(:2, inner) < box(:2, outer)) .or. any(box(3:, inner) > box(3:, outer))) &
-               cycle
+            associate (low => box(:2, :), high => box(3:, :))
+               if (any(low(:, inner) < low(:, outer) .or. high(:, inner) > high(:, outer))) cycle
+            end associate
             if (.not. lies_inside(deck%mesh, elements(first(inner):first(inner + 1) - 1), &
                sides%ends(:, outline(first_side(outer):first_side(outer + 1) - 1)))) cycle
             is_told(inner) = .true.
