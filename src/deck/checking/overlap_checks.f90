@@ -1,7 +1,7 @@
 !> Bodies that are drawn on each other: nothing keeps one from passing through the other.
 module overlap_checks
    use deck_context, only: deck_type
-   use element_kinds, only: element_corner_count, element_node_count
+   use element_kinds, only: element_corner_count
    use element_sides, only: element_sides_type
    use kinds, only: dp
    use mesh, only: mesh_type
@@ -24,23 +24,16 @@ contains
       logical :: is_told(deck%mesh%body_count)
       !> Elements of every body, and its free sides
       integer, allocatable :: elements(:), first(:), first_side(:), outline(:)
-      integer :: e, inner, k, outer, s
+      integer :: inner, n, outer
 
       box(:2, :) = huge(1.0_dp)
       box(3:, :) = -huge(1.0_dp)
-      do e = 1, size(deck%mesh%element_kind)
-         do k = 1, element_node_count(deck%mesh%element_kind(e))
-            associate (x => deck%mesh%coordinates(:, deck%mesh%element_nodes(k, e)), &
-               own => box(:, deck%mesh%element_body(e)))
-               own = [min(own(:2), x), max(own(3:), x)]
-            end associate
-         end do
+      do n = 1, size(deck%mesh%node_body)
+         if (deck%mesh%node_body(n) == 0) cycle
+         associate (x => deck%mesh%coordinates(:, n), own => box(:, deck%mesh%node_body(n)))
+            own = [min(own(:2), x), max(own(3:), x)]
+         end associate
       end do
-      call invert_lists(reshape(deck%mesh%element_body, [1, size(deck%mesh%element_body)]), &
-         [(1, e=1, size(deck%mesh%element_body))], size(box, 2), first, elements)
-      call invert_lists(reshape(deck%mesh%element_body(sides%elements(1, :sides%count)), [1, &
-         sides%count]), [(merge(1, 0, sides%elements(2, s) == 0), s=1, sides%count)], &
-         size(box, 2), first_side, outline)
       is_told = .false.
       do inner = 1, size(box, 2)
          do outer = 1, size(box, 2)
@@ -48,6 +41,11 @@ contains
             associate (low => box(:2, :), high => box(3:, :))
                if (any(low(:, inner) < low(:, outer) .or. high(:, inner) > high(:, outer))) cycle
             end associate
+            if (.not. allocated(first)) then
+               call sort_by_body(deck%mesh%element_body, first, elements)
+               call sort_by_body(merge(deck%mesh%element_body(sides%elements(1, :sides%count)), 0, &
+                  sides%elements(2, :sides%count) == 0), first_side, outline)
+            end if
             if (.not. lies_inside(deck%mesh, elements(first(inner):first(inner + 1) - 1), &
                sides%ends(:, outline(first_side(outer):first_side(outer + 1) - 1)))) cycle
             is_told(inner) = .true.
@@ -58,6 +56,14 @@ contains
          end do
       end do
    end subroutine check_overlaps
+
+   !> The members of every body, those of body b from first(b) on.
+   pure subroutine sort_by_body(body, first, members)
+      integer, intent(in) :: body(:)                 ! of each, 0 for none
+      integer, allocatable, intent(out) :: first(:), members(:)
+
+      call invert_lists(reshape(body, [1, size(body)]), min(body, 1), maxval(body), first, members)
+   end subroutine sort_by_body
 
    !> Whether elements of one body, evenly chosen, are within another with all their corners: these
    !> are drawn in a little, as outlines may coincide.
