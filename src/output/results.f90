@@ -22,6 +22,7 @@ module results
    use equations, only: section_nodes
    use hdf5_writer, only: as_integer, end_hdf5, hdf5_writer_type, start_hdf5
    use kinds, only: dp, long
+   use mesh_bodies, only: body_name
    use model, only: model_type, uncertainty_full
    use no_estimates, only: no_reason, reason_count, reason_inside_step, reason_of_run, &
       words_of_reason
@@ -500,6 +501,11 @@ contains
                      'numbers of the nodes of both faces')
                end if
                call write_geometry(file, group//'/', interfaces(i:i), model%mesh%node_number)
+            end associate
+         end do
+         do i = 1, model%mesh%body_count
+            associate (table => self%tables(4 + 2*size(interfaces) + i))
+               if (size(table%sets) > 0) call file%set(table%group, 'label', body_name(model, i))
             end associate
          end do
          call write_reasons(file, model)

@@ -432,6 +432,10 @@ class Result:
         names = [name for name in uncertainty_of(self.file) or {} if name.startswith("body ")]
         return {name: self.uncertainties(name) for name in sorted(names, key=lambda n: int(n[5:]))}
 
+    def label_of_body(self, name):
+        """Return what a body is called, such as body 2 (of STEEL, first node 38)."""
+        return text(uncertainty_of(self.file)[name].attrs.get("label", name))
+
     @cached_property
     def deck(self):
         """Card images of the deck."""

@@ -6,7 +6,6 @@ import numpy as np
 
 from ..result import ANALYSIS, NO_ANALYSIS, NO_FINER_VALUE, text, words_of
 from ..units import unit_of
-from ..body_names import body_names
 from .data import contacts_of, plain
 from .html import html, joined
 
@@ -97,13 +96,18 @@ def uncertainties(result):
             rows.append([words_of(key) + (", s" if key.startswith("edge_") else ""), number(value), *cells])
         found.append(uncertainty_table(f"Interface {contact.name} {said}", known, rows))
     found = [folded(found, f"{len(found)} interfaces {said}")] if len(found) > MOST_OPEN else found
-    largest, names = f"{said}, stress away from singular corners", body_names(result)
-    bodies = [values_table(f"{name.capitalize()}{names.get(int(name[5:]), '')} {largest}", known)
+    largest = f"{said}, stress away from singular corners"
+    bodies = [values_table(f"{capital(result.label_of_body(name))} {largest}", known)
               for name, known in result.maxima.items()]
     bodies = list(filter(None, bodies))
     found += [folded(bodies, f"{len(bodies)} bodies {said}")] if len(bodies) > MOST_OPEN else bodies
     heat = values_table(f"Heat of the model {said}", result.uncertainties("increment"))
     return joined([*found, heat])
+
+
+def capital(words):
+    """Return words that begin with a capital letter."""
+    return words[0].upper() + words[1:]
 
 
 def values_table(caption, known):
