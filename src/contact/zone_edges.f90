@@ -33,7 +33,7 @@ module zone_edges
    use kinds, only: dp
    implicit none
    private
-   public :: contact_profile_type, contact_profile, contact_edges, carries_alone, contact_end
+   public :: contact_profile_type, contact_profile, contact_edges, contact_end
    public :: edges_kept, mean_beyond, piece_of, stick_edges, turned
 
    integer, parameter :: edges_kept = 4     !! zone edges kept for an interface

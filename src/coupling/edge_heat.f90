@@ -9,11 +9,12 @@
 !>    weight omega_c J_c = integral of phi_c omega J(x) dA,
 !>
 !> so that the heat enters the bodies where it crosses, by the same sum. On the other side of a
-!> point omega is that of the point itself. A closed point between edges alone has no other side:
-!> the pressure along both has its force as the integral, however narrow the contact is.
+!> point omega is that of the point itself. The pressure of a closed point beside an edge is that
+!> with which its force is the integral of what falls to the edge, and of its hat on the other side,
+!> however narrow the contact is: a law conducts what the force carries.
 module edge_heat
    use conductance_graph, only: conductance_graph_type
-   use conductance_laws, only: conductance_law_type, law_power
+   use conductance_laws, only: conductance, conductance_law_type, law_power
    use contact_points, only: contact_points_type
    use contact_system, only: contact_open, contact_slip
    use heat_equation, only: heat_across, heat_rates_type
@@ -21,8 +22,8 @@ module edge_heat
    use kinds, only: dp
    use reduced_bodies, only: reduced_bodies_type
    use sum_lists, only: sum_list_type
-   use zone_edges, only: carries_alone, contact_end, contact_profile, contact_profile_type, &
-      mean_beyond, piece_of, turned
+   use zone_edges, only: contact_end, contact_profile, contact_profile_type, mean_beyond, &
+      piece_of, turned
    implicit none
    private
    public :: edge_integral_type, edge_heat_type, find_edge_integrals, edge_heat_at
@@ -54,6 +55,15 @@ module edge_heat
    type :: side_edge_type
       type(edge_profile_type), allocatable :: along
    end type side_edge_type
+
+   !> The conductances of an interface with edges inside sides.
+   type :: edges_type
+      type(side_edge_type), allocatable :: sides(:)   !! each from a contact point to the next
+      !> (m) conductance of a contact point on its other sides, over that of its mean pressure
+      real(dp), allocatable :: own(:)
+   contains
+      procedure :: has_edge
+   end type edges_type
 
    real(dp), parameter :: least_length = 1.0e-6_dp   !! of a closed part that has a profile [t]
    integer, parameter :: farthest = 4   !! contact points from an end of a side that its edge reads
@@ -122,12 +132,11 @@ contains
    !> The integrals of the hat functions of an interface beside an edge.
    pure subroutine integrate_hats(mortar, edges, is_beside, hats)
       type(hat_geometry_type), intent(in) :: mortar
-      type(side_edge_type), intent(in) :: edges(:)       ! (sides)
+      type(edges_type), intent(in) :: edges
       logical, intent(in) :: is_beside(:)                ! (m)
       type(edge_integral_type), intent(inout) :: hats(:) ! (count of them)
       real(dp) :: weights(support, 2)
       integer :: i, k, n, side
-      logical :: crossed
 
       hats%point = pack([(k, k=1, size(is_beside))], is_beside)
       do n = 1, size(hats)
@@ -140,14 +149,12 @@ contains
             associate (segment => mortar%segments(mortar%hats(k)%segment(i)), &
                end => mortar%hats(k)%end(i))
                side = segment%side()
-               crossed = side > 0
-               if (crossed) crossed = allocated(edges(side)%along)
-               if (.not. crossed) then
-                  weights = segment%hat_weights()
+               if (.not. edges%has_edge(side)) then
+                  weights = edges%own(k)*segment%hat_weights()
                   call add(segment, weights(:, end), 1, hats(n))
                else if (side == k .or. .not. is_beside(side)) then
                   ! Both hats of the side take their integrals at once.
-                  weights = segment%hat_weights(edges(side)%along)
+                  weights = segment%hat_weights(edges%sides(side)%along)
                   call add(segment, weights(:, end), 2, hats(n))
                   if (side < k) cycle
                   if (is_beside(k + 1)) call add(segment, weights(:, 3 - end), 2, hats(n + 1))
@@ -246,14 +253,23 @@ contains
       end function entering
    end subroutine find_heat_by_opening
 
-   !> The conductances along the sides with an edge, each between a contact point and the next.
+   !> Whether there is a side of this number, and has an edge.
+   elemental logical function has_edge(self, side)
+      class(edges_type), intent(in) :: self
+      integer, intent(in) :: side
+
+      has_edge = side >= 1 .and. side <= size(self%sides)
+      if (has_edge) has_edge = allocated(self%sides(side)%along)
+   end function has_edge
+
+   !> The conductances at the edges of an interface.
    pure function edges_of(points, law, opening, modulus, stiffness, mortar) result(edges)
       type(contact_points_type), intent(in) :: points
       type(conductance_law_type), intent(in) :: law
       real(dp), intent(in) :: opening(:), modulus(:)  ! (m)
       real(dp), intent(in) :: stiffness(:)            ! (m) at the nodes [force/length]
       type(hat_geometry_type), intent(in) :: mortar
-      type(side_edge_type) :: edges(size(opening) - 1)   ! (sides)
+      type(edges_type) :: edges
       type(contact_profile_type) :: piece, profile
       integer, allocatable :: ends(:)
       integer :: i, k
@@ -261,51 +277,60 @@ contains
       profile = contact_profile(points, merge(contact_open, contact_slip, opening > 0.0_dp), &
          max(-opening, 0.0_dp)*modulus, 0.0_dp*opening, merge(opening, opening*modulus* &
          points%weight/max(stiffness, tiny(1.0_dp)), opening > 0.0_dp))
+      allocate (edges%sides(size(opening) - 1))
+      allocate (edges%own(size(opening)), source=1.0_dp)
       ends = points%ends()
       do i = 1, size(ends), 2
          piece = piece_of(profile, ends(i), ends(i + 1))
          do k = ends(i), ends(i + 1) - 1
-            if (count(profile%contact_state(k:k + 1) == contact_open) == 1) edges(k)%along = &
+            if (count(profile%contact_state(k:k + 1) == contact_open) == 1) edges%sides(k)%along = &
                edge_between(law, piece, k + 1 - ends(i))
          end do
-         do k = ends(i), ends(i + 1)
-            if (carries_alone(piece, k + 1 - ends(i))) call carry_force(mortar, k, edges)
-         end do
+      end do
+      do k = 1, size(opening)
+         if (opening(k) >= 0.0_dp) cycle
+         if (any(edges%has_edge([k - 1, k]))) call carry_force(mortar, k, edges)
       end do
    end function edges_of
 
-   !> Gives the profiles beside a lone closed contact point a pressure whose integral is its force.
+   !> Gives a closed contact point beside edges the pressure whose integral is its force.
    pure subroutine carry_force(mortar, point, edges)
       type(hat_geometry_type), intent(in) :: mortar
       integer, intent(in) :: point
-      type(side_edge_type), intent(inout) :: edges(:)    ! (sides)
+      type(edges_type), intent(inout) :: edges
       type(conductance_law_type) :: law                 ! by which the conductance is the pressure
       type(edge_profile_type) :: course
-      real(dp) :: carried, force, weights(support, 2)   ! carried: by 1 at the contact point
+      real(dp) :: carried, of_mean, weight, weights(support, 2)
       integer :: i, side
 
       law%closed_kind = law_power
       law%power_c1 = 1.0_dp
-      carried = 0.0_dp
-      force = 0.0_dp
+      carried = 0.0_dp   ! by a pressure of 1
+      weight = 0.0_dp
       do i = 1, size(mortar%hats(point)%segment)
          associate (segment => mortar%segments(mortar%hats(point)%segment(i)), &
             end => mortar%hats(point)%end(i))
-            side = segment%side()
-            if (side == 0) cycle
-            if (.not. allocated(edges(side)%along)) cycle
             weights = segment%hat_weights()
-            force = force + dot_product(segment%area, weights(:, end))
-            course = edges(side)%along
-            course%law = law
-            course%pressure = 1.0_dp
-            weights = segment%hat_weights(course)
-            carried = carried + dot_product(segment%area, weights(:, 1) + weights(:, 2))
+            weight = weight + dot_product(segment%area, weights(:, end))
+            side = segment%side()
+            if (edges%has_edge(side)) then
+               course = edges%sides(side)%along
+               course%law = law
+               course%pressure = 1.0_dp
+               weights = segment%hat_weights(course)
+               weights(:, end) = sum(weights, dim=2)
+            end if
+            carried = carried + dot_product(segment%area, weights(:, end))
          end associate
       end do
-      do side = max(point - 1, 1), min(point, size(edges))
-         if (allocated(edges(side)%along)) edges(side)%along%pressure = &
-            edges(side)%along%pressure*force/carried
+      do side = point - 1, point
+         if (.not. edges%has_edge(side)) cycle
+         associate (along => edges%sides(side)%along)
+            of_mean = conductance(along%law, .true., 0.0_dp, along%pressure)
+            along%pressure = along%pressure*weight/carried
+            if (of_mean > 0.0_dp) edges%own(point) = conductance(along%law, .true., 0.0_dp, &
+               along%pressure)/of_mean
+         end associate
       end do
    end subroutine carry_force
 

@@ -22,17 +22,19 @@ CONVERGED = np.array([
 GAS = f"{A * 1e5:.2f}E-5, {B * 1e5:.1f}E-5"
 
 
-def cylinder(folder, conductivity="0.18", gas=GAS):
-    """Solve the cylinder on mortar points in increments of 180 C, perhaps with another open law;
-    return the values of its face."""
+def cylinder(folder, conductivity="0.18", gas=GAS, closed="0.8, 0.24, 1."):
+    """Solve the cylinder on mortar points in increments of 180 C, perhaps with other laws; return
+    the values of its face."""
     text = CYLINDER.read_text().split(OWN_MESH)[0]
     head, steps = text.split("*STEP", 1)
     steps = "*STEP" + steps.split("*VERIFY")[0]
     text = head.split("*VERIFY")[0] + steps.replace("20., 900.", "180., 900.")
-    assert "PAIRING=NODES" in text and "\n0.18\n" in text and f"\n{GAS}\n" in text
+    assert all(part in text for part in ("PAIRING=NODES", "\n0.18\n", f"\n{GAS}\n",
+                                         "\n0.8, 0.24, 1.\n"))
     deck = folder / "edge.inp"
     deck.write_text(text.replace("PAIRING=NODES", "PAIRING=SURFACES")
-                    .replace("\n0.18\n", f"\n{conductivity}\n").replace(GAS, gas))
+                    .replace("\n0.18\n", f"\n{conductivity}\n").replace(GAS, gas)
+                    .replace("0.8, 0.24, 1.", closed))
     with h5py.File(solve(deck)) as file:
         face = file["contact/FACE"]
         return {name: face[name][()] for name in face if isinstance(face[name], h5py.Dataset)}
@@ -58,6 +60,9 @@ def conductance_of_face(face, last):
     k = np.flatnonzero(face["status"][last] > 0)[-1]
     h, a = s[k + 1] - s[k], edge
     assert s[k] < a < s[k + 1]
+    # The force of point k is the integral of what falls to the edge, and of its hat before it.
+    beside = (s[k] - s[k - 1]) / 2
+    pressure[k] *= (beside + h / 2) / (beside + 2 / 3 * (a - s[k]))
     own = np.where(np.arange(len(s)) <= k, 0.8 + 0.24 * pressure, A / (B + gap))
     rising = integral(lambda x: (x - a).clip(0)**1.5 * np.interp(x, s[k:k + 3], [0, 1, 0]),
                       (s[k], s[k + 2]), s[k + 1])
@@ -79,6 +84,15 @@ def test_bodies_of_one_temperature_each_exchange_the_integral_of_the_conductance
     for last in (0, 2, 4):
         expected = 180.0 * (last + 1) * conductance_of_face(face, last)
         assert abs(face["heat_rate"][last] / expected - 1) < 3.5e-5
+
+
+def test_a_law_that_grows_with_pressure_conducts_what_the_force_carries(tmp_path):
+    """Bodies of one temperature each, next to no heat across gaps; four to eight points closed."""
+    face = cylinder(tmp_path, "1.E+10", "3.E-11, 0.3E-5", "1.E-5, 0.24, 1.")
+    assert all(0 < np.count_nonzero(closed) < len(closed) for closed in face["status"])
+    force = (face["pressure"] * face["weight"]).sum(axis=1)
+    expected = 180.0 * np.arange(1, 6) * 0.24 * force
+    np.testing.assert_allclose(face["heat_rate"], expected, rtol=1e-4)
 
 
 def test_heat_has_a_third_of_the_error_of_whole_hats(tmp_path):
