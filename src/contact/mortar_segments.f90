@@ -90,6 +90,7 @@ module mortar_segments
    contains
       procedure :: side
       procedure :: hat_weights
+      procedure :: force_carried
    end type edge_segment_type
 
    !> The hat function of a contact point.
@@ -314,6 +315,26 @@ contains
          end do
       end do
    end function hat_weights
+
+   !> Integral over a segment of the pressure of a profile that is 1 at its closed end. In the root
+   !> that this pressure is, the integrand is a polynomial.
+   pure real(dp) function force_carried(self, profile) result(force)
+      class(edge_segment_type), intent(in) :: self
+      type(edge_profile_type), intent(in) :: profile
+      real(dp) :: apart(2), root, roots(2), t
+      integer :: g
+
+      apart = merge(self%ends, 1.0_dp - self%ends, profile%closed_first)
+      roots = sqrt(max(1.0_dp - apart/profile%edge, 0.0_dp))
+      force = 0.0_dp
+      do g = 1, size(gauss_point_10)
+         root = 0.5_dp*(sum(roots) + (roots(2) - roots(1))*gauss_point_10(g))
+         t = profile%edge*(1.0_dp - root**2)
+         if (.not. profile%closed_first) t = 1.0_dp - t
+         force = force + abs(roots(2) - roots(1))*gauss_weight_10(g)*profile%edge*root**2* &
+            dot_product(self%area, cubics((2*t - sum(self%ends))/(self%ends(2) - self%ends(1))))
+      end do
+   end function force_carried
 
    !> Ends of intervals that shrink towards an edge.
    pure function graded(ends, edge) result(all_ends)

@@ -14,7 +14,7 @@
 !> however narrow the contact is: a law conducts what the force carries.
 module edge_heat
    use conductance_graph, only: conductance_graph_type
-   use conductance_laws, only: conductance, conductance_law_type, law_power
+   use conductance_laws, only: conductance, conductance_law_type
    use contact_points, only: contact_points_type
    use contact_system, only: contact_open, contact_slip
    use heat_equation, only: heat_across, heat_rates_type
@@ -298,29 +298,20 @@ contains
       type(hat_geometry_type), intent(in) :: mortar
       integer, intent(in) :: point
       type(edges_type), intent(inout) :: edges
-      type(conductance_law_type) :: law                 ! by which the conductance is the pressure
-      type(edge_profile_type) :: course
-      real(dp) :: carried, of_mean, weight, weights(support, 2)
+      real(dp) :: carried, of_hat, of_mean, weight, weights(support, 2)
       integer :: i, side
 
-      law%closed_kind = law_power
-      law%power_c1 = 1.0_dp
       carried = 0.0_dp   ! by a pressure of 1
       weight = 0.0_dp
       do i = 1, size(mortar%hats(point)%segment)
          associate (segment => mortar%segments(mortar%hats(point)%segment(i)), &
             end => mortar%hats(point)%end(i))
             weights = segment%hat_weights()
-            weight = weight + dot_product(segment%area, weights(:, end))
+            of_hat = dot_product(segment%area, weights(:, end))
+            weight = weight + of_hat
             side = segment%side()
-            if (edges%has_edge(side)) then
-               course = edges%sides(side)%along
-               course%law = law
-               course%pressure = 1.0_dp
-               weights = segment%hat_weights(course)
-               weights(:, end) = sum(weights, dim=2)
-            end if
-            carried = carried + dot_product(segment%area, weights(:, end))
+            if (edges%has_edge(side)) of_hat = segment%force_carried(edges%sides(side)%along)
+            carried = carried + of_hat
          end associate
       end do
       do side = point - 1, point
