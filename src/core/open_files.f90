@@ -3,10 +3,10 @@
 module open_files
    use, intrinsic :: iso_c_binding, only: c_char, c_int, c_long, c_null_char
    use errors, only: error_type, set_error, status_internal
-   use file_calls, only: cannot_write, check_written
+   use file_calls, only: cannot_write, check_written, create_working_file, remove_file, rename_file
    implicit none
    private
-   public :: open_new_file, write_file, lock_file, unlock_file, write_to_file, empty_file, &
+   public :: open_new_file, replace_file, lock_file, unlock_file, write_to_file, empty_file, &
       close_descriptor
 
    integer(c_int), parameter :: locked_by_another = -1_c_int   !! as in file_calls.c
@@ -74,6 +74,20 @@ contains
       call write_to_file(descriptor, path, string, error)
       call close_descriptor(descriptor)
    end subroutine write_file
+
+   !> Makes a file of a text; one that is there is replaced in one instant.
+   !> Error: status_internal, when the system refuses.
+   subroutine replace_file(path, string, error)
+      character(*), intent(in) :: path, string             !! as write_file
+      type(error_type), allocatable, intent(out) :: error  !! with the system's reason
+      character(:), allocatable :: working_path
+
+      call create_working_file(path, working_path, error)
+      if (allocated(error)) return
+      call write_file(working_path, string, error)
+      if (.not. allocated(error)) call rename_file(working_path, path, error)
+      if (allocated(error)) call remove_file(working_path)
+   end subroutine replace_file
 
    !> Opens a file and locks it: the system frees the lock with the descriptor,
    !> at the latest when the process ends, however it ends.

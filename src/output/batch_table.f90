@@ -4,11 +4,10 @@ module batch_table
    use, intrinsic :: iso_fortran_env, only: output_unit
    use deck_outcomes, only: deck_outcome_type
    use errors, only: error_type
-   use file_calls, only: create_working_file, remove_file, rename_file
    use kinds, only: dp
    use messages, only: print_line
    use name_index, only: name_index_type
-   use open_files, only: write_file
+   use open_files, only: replace_file
    use processes, only: reason_of, report_type
    use text, only: append, counted, quoted, string_type, to_text, to_upper, &
       with_decimals
@@ -97,24 +96,35 @@ contains
       type(error_type), allocatable, intent(out) :: error
       type(string_type), intent(in), optional :: names(:)      !! columns of a table of values
       type(string_type), intent(in), optional :: values(:, :)  !! (columns, runs)
-      character(:), allocatable :: working_path, text
+      character(:), allocatable :: line, text
       type(string_type), allocatable :: results(:)
-      integer :: i
+      integer :: i, k
 
-      call create_working_file(path, working_path, error)
-      if (allocated(error)) return
       results = result_columns(outcomes)
       text = 'deck'//columns//new_line('a')
-      if (present(names)) text = joined(names, adds_quotes=.true.)//',run'// &
-         columns//after_comma(results, adds_quotes=.true.)//new_line('a')
+      if (present(names)) then
+         line = ''
+         do k = 1, size(names)
+            line = line//quoted(names(k)%value)//','
+         end do
+         line = line//'run'//columns
+         do k = 1, size(results)
+            line = line//','//quoted(results(k)%value)
+         end do
+         text = line//new_line('a')
+      end if
       do i = 1, size(outcomes)
-         if (present(values)) text = text//joined(values(:, i), adds_quotes=.false.)//','
-         text = text//row_of(outcomes(i), outcomes(i)%report)//after_comma(results_of(outcomes(i), &
-            results), adds_quotes=.false.)//new_line('a')
+         line = ''
+         do k = 1, merge(size(names), 0, present(names))
+            line = line//values(k, i)%value//','
+         end do
+         line = line//row_of(outcomes(i), outcomes(i)%report)
+         do k = 1, size(results)
+            line = line//','//outcomes(i)%row%value_of(results(k)%value)
+         end do
+         text = text//line//new_line('a')
       end do
-      call write_file(working_path, text, error)
-      if (.not. allocated(error)) call rename_file(working_path, path, error)
-      if (allocated(error)) call remove_file(working_path)
+      call replace_file(path, text, error)
    end subroutine write_batch
 
    !> The quantities of all rows, in the order in which they come first.
@@ -126,56 +136,16 @@ contains
 
       allocate (names(0))
       do i = 1, size(outcomes)
-         associate (row => outcomes(i)%row)
-            if (.not. allocated(row%names)) cycle
-            do k = 1, size(row%names)
-               if (known%find(row%names(k)%value) > 0) cycle
-               call known%add(row%names(k)%value)
-               call append(names, row%names(k)%value)
-            end do
-         end associate
+         if (.not. allocated(outcomes(i)%row%names)) cycle
+         do k = 1, size(outcomes(i)%row%names)
+            associate (name => outcomes(i)%row%names(k)%value)
+               if (known%find(name) > 0) cycle
+               call known%add(name)
+               call append(names, name)
+            end associate
+         end do
       end do
    end function result_columns
-
-   !> The values of a run for these quantities, nothing for those that it does not have.
-   function results_of(outcome, names) result(values)
-      type(deck_outcome_type), intent(in) :: outcome
-      type(string_type), intent(in) :: names(:)
-      type(string_type) :: values(size(names))
-      integer :: i
-
-      do i = 1, size(names)
-         values(i)%value = outcome%row%value_of(names(i)%value)
-      end do
-   end function results_of
-
-   !> Fields with commas between them.
-   function joined(fields, adds_quotes) result(line)
-      type(string_type), intent(in) :: fields(:)
-      logical, intent(in) :: adds_quotes                   ! around texts
-      character(:), allocatable :: line
-      integer :: i
-
-      line = ''
-      do i = 1, size(fields)
-         if (i > 1) line = line//','
-         if (adds_quotes) then
-            line = line//quoted(fields(i)%value)
-         else
-            line = line//fields(i)%value
-         end if
-      end do
-   end function joined
-
-   !> Fields with a comma before each.
-   function after_comma(fields, adds_quotes) result(line)
-      type(string_type), intent(in) :: fields(:)
-      logical, intent(in) :: adds_quotes                   ! around texts
-      character(:), allocatable :: line
-
-      line = ''
-      if (size(fields) > 0) line = ','//joined(fields, adds_quotes)
-   end function after_comma
 
    function row_of(deck, report) result(line)
       type(deck_outcome_type), intent(in) :: deck

@@ -4,7 +4,6 @@ module deck_outcomes
    use, intrinsic :: iso_fortran_env, only: error_unit, output_unit
    use errors, only: error_type, status_deck, status_internal, status_interrupted, &
       status_no_convergence, status_ok, status_verify
-   use deck_documents, only: print_document
    use json, only: json_type
    use kinds, only: dp
    use messages, only: message_type, print_line
@@ -12,9 +11,10 @@ module deck_outcomes
    use records, only: increment_record_type
    use result_rows, only: result_row_type
    use text, only: append, counted, string_type, to_text, with_decimals
+   use version, only: program_version
    implicit none
    private
-   public :: deck_outcome_type, end_of_run, counts_of_checks
+   public :: deck_outcome_type, end_of_run, counts_of_checks, print_document
 
    !> Files that a run has written by how far it came: none, listing, passes that failed, all
    !> without and with contact.
@@ -207,6 +207,44 @@ contains
          call print_document('run', self%path, int(report%status), self%messages, members)
       end associate
    end subroutine print_json
+
+   !> Prints the document that `--json` prints of a deck on stdout.
+   subroutine print_document(command, deck, status, messages, members)
+      character(*), intent(in) :: command                 !! run or check
+      character(*), intent(in) :: deck                    !! as given
+      integer, intent(in) :: status                       !! exit status
+      type(message_type), allocatable, intent(in) :: messages(:)   !! unallocated for none
+      type(json_type), intent(in) :: members              !! what else it has
+      type(json_type) :: document
+      integer :: i
+
+      call document%open('{')
+      call document%put('thercon', 'program')
+      call document%put(program_version, 'version')
+      call document%put(command, 'command')
+      call document%put(deck, 'deck')
+      call document%put(status, 'status')
+      call document%open('[', 'messages')
+      if (allocated(messages)) then
+         do i = 1, size(messages)
+            associate (message => messages(i))
+               call document%open('{')
+               call document%put(message%severity, 'severity')
+               call document%put(message%file, 'file')
+               if (message%line > 0) then
+                  call document%put(message%line, 'line')
+                  call document%put(message%column, 'column')
+               end if
+               call document%put(message%words, 'message')
+               call document%close('}')
+            end associate
+         end do
+      end if
+      call document%close(']')
+      call document%put_members(members)
+      call document%close('}')
+      call print_line(output_unit, document%text)
+   end subroutine print_document
 
    !> Prints the checks that failed on stderr, one line each.
    subroutine print_failed_checks(self)

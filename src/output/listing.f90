@@ -275,14 +275,14 @@ contains
          call self%page%line('')
          call self%page%line('   The matrix of heat was factored '// &
             counted(run%sizes%heat_factored, 'time')//' in '// &
-            counted(self%summary%increment, 'increment')//'.')
+            counted(self%summary%last%increment, 'increment')//'.')
       end if
       if (follows_temperatures(model)) call print_bodies(self%page, model, run%sizes)
       call self%page%deck(cards)
       call write_text(self, error)
       if (allocated(error)) return
       allocate (lines(0))
-      call append(lines, ending(run, allocated(self%failure), self%summary%increment))
+      call append(lines, ending(run, allocated(self%failure), self%summary%last%increment))
       call append(lines, checks(verifier, run))
       if (size(warnings) == 0) call append(lines, 'no warnings')
       if (size(warnings) > 0) call append(lines, counted(size(warnings), 'warning')// &
@@ -356,11 +356,11 @@ contains
       character(:), allocatable :: line
       integer :: i, k
 
-      if (.not. allocated(summary%contacts)) return
+      if (.not. allocated(summary%last%contacts)) return
       do i = 1, size(interfaces)
          associate (m => size(interfaces(i)%slave))
             far = pack([(k, k=1, m)], never_approached(interfaces(i)%initial_gap, &
-               summary%contacts(i)%smallest_gap))
+               summary%last%contacts(i)%smallest_gap))
             if (size(far) == 0) cycle
             call page%title('CONTACT POINTS THAT NEVER APPROACHED: '// &
                to_text(size(far))//' of '//to_text(m)//' of '//interfaces(i)%name)

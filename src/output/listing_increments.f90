@@ -30,6 +30,7 @@ module listing_increments
 
    character(*), parameter :: kinds_of_error(3) = [character(10) :: 'change', 'scatter', &
       'iteration']
+   integer, parameter :: longest_name = 30   !! of a quantity of an interface, in words
    character(*), parameter :: uncertainty_head = '         value  uncertainty          %'// &
       '      change       scatter     iteration  largest part'
 
@@ -94,7 +95,7 @@ contains
             sums = sums//told(quantity, value(1))
          end if
       end do
-      zones = zone_counts(contact%contact_state)
+      zones = zone_counts([contact])
       call page%line('   '//points%name//'   I '//to_text(zones(1))//'   II '// &
          to_text(zones(2))//'   III '//to_text(zones(3))//edges)
       call page%line('   '//sums)
@@ -110,10 +111,7 @@ contains
       real(dp) :: value(1)
       integer :: i, q, zones(3)
 
-      zones = 0
-      do i = 1, size(contacts)
-         zones = zones + zone_counts(contacts(i)%contact_state)
-      end do
+      zones = zone_counts(contacts)
       call page%line('   '//to_text(size(interfaces))//' interfaces   I '//to_text(zones(1))// &
          '   II '//to_text(zones(2))//'   III '//to_text(zones(3)))
       line = 'largest'
@@ -211,10 +209,7 @@ contains
       unit = or_blank(model%units%time)
       if (stability_words(record, unit) /= '') call page%wrapped('   ', 'stability: '// &
          stability_words(record, unit))
-      if (allocated(record%stability)) then
-         if (allocated(record%stability%leading)) call page%wrapped('   ', &
-            leading_words(record%stability%leading, unit))
-      end if
+      if (leading_words(record, unit) /= '') call page%wrapped('   ', leading_words(record, unit))
       associate (work => record%work)
          if (work%columns_full > 0) call page%line('   refactored '// &
             to_text(work%columns_again)//' of '//to_text(work%columns_full)//' columns ('// &
@@ -259,34 +254,28 @@ contains
       type(page_type), intent(inout) :: page               !! of the listing
       type(contact_points_type), intent(in) :: points      !! the contact points of the interface
       type(uncertainty_type), intent(in) :: errors(:)      !! (estimated)
-      type(string_type) :: names(size(estimated))
+      character(longest_name) :: names(size(estimated))
       integer :: q
 
       do q = 1, size(estimated)
+         names(q) = ''
          if (is_worth_telling(q, errors(q)%value, errors(q)%total) .and. &
-            .not. is_end_of_face(estimated(q), points, errors(q)%value)) then
-            names(q)%value = words_of(estimated(q)%name)
-         else
-            names(q)%value = ''
-         end if
+            .not. is_end_of_face(estimated(q), points, errors(q)%value)) &
+            names(q) = words_of(estimated(q)%name)
       end do
-      call print_table(page, points%name, maxval([(len(words_of(estimated(q)%name)), q=1, &
-         size(estimated))]), names, errors)
+      call print_table(page, points%name, names(:)(:maxval([(len(words_of(estimated(q)%name)), &
+         q=1, size(estimated))])), errors)
    end subroutine print_uncertainties
 
    !> Prints those of the quantities of an increment.
    subroutine print_history_uncertainties(page, errors)
       type(page_type), intent(inout) :: page               !! of the listing
       type(uncertainty_type), intent(in) :: errors(:)      !! (history_estimated)
-      type(string_type) :: names(size(history_estimated))
-      integer :: q
+      character(maxval(len_trim(history_estimated%name))) :: names(size(history_estimated))
 
-      do q = 1, size(names)
-         names(q)%value = ''
-         if (.not. ieee_is_nan(errors(q)%value)) names(q)%value = trim(history_estimated(q)%name)
-      end do
-      if (any([(names(q)%value /= '', q=1, size(names))])) call print_table(page, &
-         'THE INCREMENT', maxval(len_trim(history_estimated%name)), names, errors)
+      names = history_estimated%name
+      where (ieee_is_nan(errors%value)) names = ''
+      if (any(names /= '')) call print_table(page, 'THE INCREMENT', names, errors)
    end subroutine print_history_uncertainties
 
    !> Prints the uncertainties of the maxima of a body, where they are, and the corners that are
@@ -296,44 +285,37 @@ contains
       type(mesh_type), intent(in) :: mesh
       integer, intent(in) :: body
       type(body_uncertainty_type), intent(in) :: errors
-      type(string_type) :: names(size(maxima))
+      character(len('largest ') + maxval(len_trim(maxima%label))) :: names(size(maxima))
       integer :: q
 
+      names = 'largest '//maxima%label
+      where (errors%node == 0) names = ''
+      if (any(errors%node > 0)) call print_table(page, 'BODY '//to_text(body), names, errors%maxima)
       do q = 1, size(maxima)
-         names(q)%value = ''
-         if (errors%node(q) > 0) names(q)%value = 'largest '//trim(maxima(q)%label)
-      end do
-      if (any(errors%node > 0)) call print_table(page, 'BODY '//to_text(body), &
-         len('largest ') + maxval(len_trim(maxima%label)), names, errors%maxima)
-      do q = 1, size(maxima)
-         if (errors%node(q) > 0) call page%wrapped('    ', names(q)%value//' at '// &
+         if (errors%node(q) > 0) call page%wrapped('    ', trim(names(q))//' at '// &
             place_words(mesh, errors%node(q)))
       end do
       if (size(errors%corners) > 0) call page%wrapped('    ', corner_words(mesh, errors))
    end subroutine print_maxima
 
    !> Prints uncertainties with their parts, and why there are none.
-   subroutine print_table(page, title, width, names, errors)
+   subroutine print_table(page, title, names, errors)
       type(page_type), intent(inout) :: page
       character(*), intent(in) :: title                    ! what they are of
-      integer, intent(in) :: width                         ! of the names
-      type(string_type), intent(in) :: names(:)            ! of the quantities; empty: not told
+      character(*), intent(in) :: names(:)                 ! of the quantities; empty: not told
       type(uncertainty_type), intent(in) :: errors(:)      ! of them
       type(string_type), allocatable :: rows(:)
-      character(width) :: name
       real(dp) :: part
-      integer :: k, q
+      integer :: q
 
       allocate (rows(0))
-      name = ''
-      call append(rows, '    '//name//uncertainty_head)
+      call append(rows, '    '//repeat(' ', len(names))//uncertainty_head)
       do q = 1, size(names)
          associate (own => errors(q))
-            if (names(q)%value == '') cycle
-            name = names(q)%value
+            if (names(q) == '') cycle
             part = ieee_value(part, ieee_quiet_nan)
             if (abs(own%value) > 0.0_dp) part = 100.0_dp*own%total/abs(own%value)
-            call append(rows, trim('    '//name//column(own%value, 14, 6)// &
+            call append(rows, trim('    '//names(q)//column(own%value, 14, 6)// &
                cell(own%total, 13, 'no estimate')//cell(part, 11, '-')// &
                cell(own%change, 12, '-')//cell(own%scatter, 14, '-')// &
                cell(own%iteration, 14, '-')//'    '//largest_part(own)))
@@ -343,8 +325,8 @@ contains
          'off to either side, with its parts', rows)
       do q = 1, size(names)
          associate (why => errors(q)%no_estimate)
-            if (why == no_reason .or. names(q)%value == '') cycle
-            if (any([(names(k)%value /= '' .and. errors(k)%no_estimate == why, k=1, q - 1)])) cycle
+            if (why == no_reason .or. names(q) == '') cycle
+            if (any(names(:q - 1) /= '' .and. errors(:q - 1)%no_estimate == why)) cycle
             call page%wrapped('    ', 'no estimate: '//words_of_reason(why))
          end associate
       end do

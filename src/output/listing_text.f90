@@ -5,6 +5,7 @@ module listing_text
    use contact_system, only: contact_open, contact_stick
    use kinds, only: dp, long
    use quantity_types, only: quantity_type
+   use records, only: contact_record_type
    use text, only: string_type, to_text, with_decimals
    use utf8, only: printable
    implicit none
@@ -292,12 +293,15 @@ contains
    end function table_row
 
    !> Numbers of contact points in the zones.
-   pure function zone_counts(contact_state) result(counts)
-      integer, intent(in) :: contact_state(:) !! (contact points) contact states
+   pure function zone_counts(contacts) result(counts)
+      type(contact_record_type), intent(in) :: contacts(:)
       integer :: counts(3)               !! contact points in zones I, II and III
-      integer :: i
+      integer :: i, k
 
-      counts = [(count(contact_state == i), i=contact_open, contact_stick)]
+      counts = 0
+      do k = 1, size(contacts)
+         counts = counts + [(count(contacts(k)%contact_state == i), i=contact_open, contact_stick)]
+      end do
    end function zone_counts
 
 end module listing_text

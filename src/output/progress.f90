@@ -61,13 +61,10 @@ contains
    subroutine take(self, record)
       class(progress_type), intent(inout) :: self         !! the line
       type(increment_record_type), intent(in) :: record
-      integer :: zones(3), i
+      integer :: zones(3)
 
       if (.not. self%is_shown) return
-      zones = 0
-      do i = 1, size(record%contacts)
-         zones = zones + zone_counts(record%contacts(i)%contact_state)
-      end do
+      zones = zone_counts(record%contacts)
       self%last = '  load '//to_text(record%load)
       if (allocated(record%iterations)) self%last = self%last//'  iterations '// &
          to_text(size(record%iterations))

@@ -4,10 +4,9 @@ module result_rows
    use, intrinsic :: ieee_arithmetic, only: ieee_is_finite
    use deck_source, only: read_lines
    use errors, only: error_type
-   use file_calls, only: create_working_file, remove_file, rename_file
    use kinds, only: dp
    use name_index, only: name_index_type
-   use open_files, only: write_file
+   use open_files, only: replace_file
    use text, only: all_digits, append, quoted, string_type
    implicit none
    private
@@ -83,25 +82,20 @@ contains
       if (i > 0) value = self%values(i)%value
    end function value_of
 
-   !> Writes the row to a file of one line for each quantity; one that is there is replaced in one
-   !> instant.
+   !> Writes the row to a file of one line for each quantity, as replace_file does.
    !> Error: status_internal, when the file cannot be written.
    subroutine write_row(self, path, error)
       class(result_row_type), intent(in) :: self
       character(*), intent(in) :: path
       type(error_type), allocatable, intent(out) :: error
-      character(:), allocatable :: text, working_path
+      character(:), allocatable :: text
       integer :: i
 
       text = heading//new_line('a')
       do i = 1, size(self%names)
          text = text//quoted(self%names(i)%value)//','//self%values(i)%value//new_line('a')
       end do
-      call create_working_file(path, working_path, error)
-      if (allocated(error)) return
-      call write_file(working_path, text, error)
-      if (.not. allocated(error)) call rename_file(working_path, path, error)
-      if (allocated(error)) call remove_file(working_path)
+      call replace_file(path, text, error)
    end subroutine write_row
 
    !> Reads a row; there is none where the file is not there or is none of these.

@@ -1,12 +1,13 @@
-!> Groups `/history`, `/convergence`, `/contact/<name>` and `/uncertainty` of the result file. Their
-!> datasets grow row by row.
+!> Groups `/history`, `/convergence`, `/contact/<name>` and `/uncertainty` of the result file, whose
+!> datasets grow row by row; and `/rigid_surfaces`, the drawings of rigid bodies for pictures.
 module result_tables
    use contact_points, only: contact_points_type
    use contact_quantities, only: contact_values, geometry_values
-   use growing_datasets, only: growing_dataset_type, quantity_dataset, write_once
-   use hdf5_writer, only: hdf5_writer_type
+   use growing_datasets, only: growing_dataset, growing_dataset_type, quantity_dataset, write_once
+   use hdf5_writer, only: as_real, hdf5_writer_type
    use increment_quantities, only: part_values, history_value, pass_value
    use kinds, only: dp
+   use mesh, only: mesh_type
    use quantity_types, only: of_bodies, of_history, of_motions, of_references, of_sections, &
       quantity_type
    use records, only: contact_record_type, increment_record_type, uncertainty_type
@@ -14,7 +15,9 @@ module result_tables
    use solution_report, only: iteration_record_type
    implicit none
    private
-   public :: result_table_type, with_uncertainty, write_geometry
+   public :: result_table_type, with_uncertainty, write_geometry, write_rigid_surfaces
+
+   character(*), parameter :: rigid_group = '/rigid_surfaces'
 
    !> A group with one dataset for each quantity: `/history` and `/contact/<name>` with one row an
    !> increment, `/convergence` with one row a pass, `/uncertainty` and `/uncertainty/<name>` with
@@ -151,5 +154,32 @@ contains
          call write_once(file, quantity_dataset(group, geometry(k), 1, 1), values)
       end do
    end subroutine write_geometry
+
+   !> Writes each rigid surface, which has no elements, before deformation as points of a line, arcs divided finely, with
+   !> the nodes that it follows. Without such surfaces there is no group.
+   subroutine write_rigid_surfaces(file, mesh)
+      type(hdf5_writer_type), intent(inout) :: file       !! the open file
+      type(mesh_type), intent(in) :: mesh
+      real(dp), allocatable :: points(:, :)
+      real(dp) :: none(2, 0)
+      integer :: i
+
+      do i = 1, size(mesh%surfaces)
+         if (.not. allocated(mesh%surfaces(i)%drawing)) cycle
+         associate (line => mesh%surfaces(i)%drawing, group => rigid_group//'/'// &
+            mesh%surfaces(i)%name)
+            if (line%reference == 0) cycle
+            if (.not. file%has(rigid_group)) call file%create_group(rigid_group)
+            call file%create_group(group)
+            points = line%samples(none)
+            if (line%closed) points = reshape([points, points(:, 1)], shape(points) + [0, 1])
+            call write_once(file, growing_dataset(group//'/points', as_real, 2, size(points, 2), &
+               1, 'coordinates before deformation, from the first end to the last', 'length'), &
+               reshape(points, [size(points)]))
+            call file%set(group, 'reference_node', mesh%node_number(line%reference))
+            call file%set(group, 'rotation_node', mesh%node_number(line%rotation))
+         end associate
+      end do
+   end subroutine write_rigid_surfaces
 
 end module result_tables

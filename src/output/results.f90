@@ -18,7 +18,8 @@ module results
    use history_results, only: history_results_type
    use materials, only: melts, of_expansion, reference_nodes
    use increment_quantities, only: history_estimated
-   use result_tables, only: result_table_type, with_uncertainty, write_geometry
+   use result_tables, only: result_table_type, with_uncertainty, write_geometry, &
+      write_rigid_surfaces
    use equations, only: section_nodes
    use hdf5_writer, only: as_integer, end_hdf5, hdf5_writer_type, start_hdf5
    use kinds, only: dp, long
@@ -35,7 +36,6 @@ module results
    use reported_quantities, only: datasets, geometry
    use accuracy_lines, only: write_accuracy
    use restart_results, only: restart_results_type
-   use rigid_results, only: write_rigid_surfaces
    use result_fields, only: cell_sets, contact_grid_type, field_results_type, interface_sets, &
       node_sets
    use run_summaries, only: run_summary_type, write_run

@@ -7,7 +7,7 @@ module run_documents
    use contact_quantities, only: contact_table, contact_values, estimated, has_quantity
    use contact_system, only: contact_open
    use field_quantities, only: maxima
-   use increment_quantities, only: history_estimated
+   use increment_quantities, only: history_estimated, leading_words, stability_words
    use json, only: json_type
    use kinds, only: dp
    use model, only: model_type
@@ -33,17 +33,22 @@ contains
       type(summary_type), intent(in) :: summary
       type(model_type), intent(in) :: model
       type(contact_points_type), intent(in) :: interfaces(:)   !! contact points of every interface
+      character(:), allocatable :: stability
+      logical :: has_leading
       integer :: i
 
       call document%open('{', 'summary')
-      call document%put(summary%increment, 'increment')
-      if (summary%increment > 0) then
-         call document%put(summary%time, 'time')
-         call document%put(summary%load, 'load')
+      call document%put(summary%last%increment, 'increment')
+      if (summary%last%increment > 0) then
+         call document%put(summary%last%time, 'time')
+         call document%put(summary%last%load, 'load')
          call document%put(or_blank(model%load_label), 'load_label')
-         if (allocated(summary%load_factor)) call document%put(summary%load_factor, 'load_factor')
-         if (summary%stability /= '') call document%put(summary%stability, 'stability')
-         if (allocated(summary%leading)) call put_leading(document, summary%leading)
+         if (allocated(summary%last%load_factor)) call document%put(summary%last%load_factor, &
+            'load_factor')
+         stability = stability_words(summary%last, or_blank(model%units%time))
+         if (stability /= '') call document%put(stability, 'stability')
+         has_leading = leading_words(summary%last, '') /= ''
+         if (has_leading) call put_leading(document, summary%last%stability%leading)
          call document%open('{', 'interfaces')
          do i = 1, size(interfaces)
             call put_interface(document, row, summary, model, interfaces(i), i)
@@ -51,10 +56,12 @@ contains
          call document%close('}')
          call put_fields(document, row, summary, model)
          call put_bodies(document, row, summary, model)
-         if (allocated(summary%leading)) then
-            call row%put('unstable_modes', real(summary%unstable_modes, dp))
-            call row%put('growth_rate', summary%leading(1, 1))
-            call row%put('period', summary%leading(2, 1))
+         if (has_leading) then
+            associate (found => summary%last%stability)
+               call row%put('unstable_modes', real(found%unstable_modes, dp))
+               call row%put('growth_rate', found%leading(1, 1))
+               call row%put('period', found%leading(2, 1))
+            end associate
          end if
       end if
       call document%close('}')
@@ -89,7 +96,7 @@ contains
       integer :: k, q
 
       call document%open('{', points%name)
-      associate (contact => summary%contacts(i))
+      associate (contact => summary%last%contacts(i))
          call document%put(size(contact%contact_state), 'contact_points')
          call document%put(count(contact%contact_state /= contact_open), 'closed_contact_points')
          do k = 1, size(contact_table)
@@ -104,8 +111,8 @@ contains
             end do
             if (is_end_of_face(quantity, points, value(1))) then
                call document%put('end of the face', 'no_estimate')
-            else if (q > 0 .and. allocated(summary%errors)) then
-               call put_uncertainty(document, row, summary%errors(q, i))
+            else if (q > 0 .and. allocated(summary%last%uncertainties)) then
+               call put_uncertainty(document, row, summary%last%uncertainties(q, i))
             else if (q > 0) then
                call document%put(words_of_reason(reason_inside_step(model)), 'no_estimate')
             else
@@ -137,7 +144,8 @@ contains
       end if
       if (allocated(summary%displacement)) call put_plain('largest_displacement', &
          summary%displacement, 'length')
-      if (allocated(summary%solid_time)) call put_plain('solid_time', summary%solid_time, 'time')
+      if (allocated(summary%last%solid_time)) call put_plain('solid_time', &
+         summary%last%solid_time, 'time')
       call document%close('}')
    contains
       subroutine put_plain(name, value, unit)
@@ -150,8 +158,8 @@ contains
          call document%put(unit_in_words(unit, model%units), 'unit')
          call row%put(name, value)
          q = find_quantity(history_estimated, name)
-         if (q > 0 .and. allocated(summary%history_errors)) then
-            call put_uncertainty(document, row, summary%history_errors(q))
+         if (q > 0 .and. allocated(summary%last%history_uncertainties)) then
+            call put_uncertainty(document, row, summary%last%history_uncertainties(q))
          else if (q > 0) then
             call document%put(words_of_reason(reason_inside_step(model)), 'no_estimate')
          end if
@@ -169,10 +177,11 @@ contains
       integer :: b, k, q
 
       call document%open('[', 'bodies')
-      if (allocated(summary%body_errors)) then
-         do b = 1, size(summary%body_errors)
+      if (allocated(summary%last%body_uncertainties)) then
+         do b = 1, size(summary%last%body_uncertainties)
             call document%open('{')
-            associate (errors => summary%body_errors(b), number => model%mesh%node_number)
+            associate (errors => summary%last%body_uncertainties(b), number => &
+               model%mesh%node_number)
                do q = 1, size(maxima)
                   if (errors%node(q) == 0) cycle
                   quantity = maxima(q)

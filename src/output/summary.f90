@@ -20,8 +20,8 @@ module summary
    use no_estimates, only: at_corner, mark_of, no_finer_value, no_reason, of_checks, &
       reason_inside_step, reason_of_run
    use quantity_types, only: find_quantity, needs_wear, of_interface, quantity_type
-   use records, only: body_uncertainty_type, contact_record_type, increment_record_type, &
-      uncertainty_type
+   use records, only: body_uncertainty_type, contact_record_type, increment_outcome_type, &
+      increment_record_type, uncertainty_type
    use text, only: append, few_digits, or_blank, percent, string_type, to_text
    use unit_labels, only: unit_label
    implicit none
@@ -58,31 +58,13 @@ module summary
 
    !> Results of the last accepted increment.
    type :: summary_type
-      integer :: increment = 0                                !! its number; 0 before the first
-      real(dp) :: time = 0.0_dp                               !! total time [time]
-      real(dp) :: load = 0.0_dp                               !! value on the load axis
-      type(contact_record_type), allocatable :: contacts(:)   !! (interfaces)
-      !> (quantities, interfaces) or unallocated
-      type(uncertainty_type), allocatable :: errors(:, :)
-      type(body_uncertainty_type), allocatable :: body_errors(:)   !! (bodies) or unallocated
+      type(increment_outcome_type) :: last                    !! its number is 0 before the first
       !> Smallest and largest temperature, heat in and out
       real(dp), allocatable :: heat(:)
       !> The largest magnitude of a displacement [length]
       real(dp), allocatable :: displacement
-      real(dp), private :: friction_heat = 0.0_dp   !! made by friction; NaN without it [power]
-      character(:), allocatable, private :: cycle  !! what the last cycle did, or none
-      !> (2, bodies) as in the record, or none
-      real(dp), allocatable, private :: inelastic_strain(:, :)
-      type(string_type), allocatable, private :: steps(:)   !! a line for each step and interface
-      real(dp), allocatable :: solid_time          !! when the last point became solid [time]
-      !> Uncertainties of `history_estimated` of increment_quantities, or none
-      type(uncertainty_type), allocatable :: history_errors(:)
-      !> (2, sections) forces of pre-tension sections and their uncertainties, NaN for none
-      real(dp), allocatable, private :: pre_tension(:, :)
-      character(:), allocatable :: stability       !! whether it lasts; or empty
-      real(dp), allocatable :: leading(:, :)       !! as stability_record_type
-      integer :: unstable_modes = 0                !! where leading ones are known
-      real(dp), allocatable :: load_factor         !! of a point of a branch
+      character(:), allocatable, private :: cycle             !! what the last cycle did, or none
+      type(string_type), allocatable, private :: steps(:)     !! a line for each step and interface
       !> Load factors of the folds so far; unallocated for none
       real(dp), allocatable, private :: folds(:)
    contains
@@ -104,40 +86,12 @@ contains
       if (.not. allocated(self%steps)) allocate (self%steps(0))
       if (record%last_of_step .and. size(model%steps) > 1) call add_step(self%steps, interfaces, &
          record)
-      self%increment = record%increment
-      self%time = record%time
-      self%load = record%load
-      self%contacts = record%contacts
-      self%stability = stability_words(record, or_blank(model%units%time))
-      if (allocated(self%leading)) deallocate (self%leading)
-      if (allocated(record%stability)) then
-         if (allocated(record%stability%leading)) self%leading = record%stability%leading
-         self%unstable_modes = record%stability%unstable_modes
-      end if
+      self%last = record%increment_outcome_type
       if (allocated(record%cycle)) self%cycle = record%cycle
-      if (allocated(self%solid_time)) deallocate (self%solid_time)
-      if (allocated(record%solid_time)) self%solid_time = record%solid_time
-      self%friction_heat = record%heat_friction
-      if (allocated(self%history_errors)) deallocate (self%history_errors)
-      if (allocated(record%history_uncertainties)) self%history_errors = &
-         record%history_uncertainties
-      if (allocated(record%inelastic_strain)) self%inelastic_strain = record%inelastic_strain
-      if (allocated(record%pre_tension)) then
-         self%pre_tension = spread(record%pre_tension, 1, 2)
-         self%pre_tension(2, :) = ieee_value(1.0_dp, ieee_quiet_nan)
-         if (allocated(record%pre_tension_uncertainties)) self%pre_tension(2, :) = &
-            record%pre_tension_uncertainties
-      end if
-      if (allocated(self%load_factor)) deallocate (self%load_factor)
-      if (allocated(record%load_factor)) self%load_factor = record%load_factor
       if (record%is_fold) then
          if (.not. allocated(self%folds)) allocate (self%folds(0))
          self%folds = [self%folds, record%load_factor]
       end if
-      if (allocated(self%errors)) deallocate (self%errors)
-      if (allocated(record%uncertainties)) self%errors = record%uncertainties
-      if (allocated(self%body_errors)) deallocate (self%body_errors)
-      if (allocated(record%body_uncertainties)) self%body_errors = record%body_uncertainties
       if (allocated(self%heat)) deallocate (self%heat)
       if (allocated(self%displacement)) deallocate (self%displacement)
       associate (fields => record%fields)
@@ -259,9 +213,10 @@ contains
       type(model_type), intent(in) :: model
       type(contact_points_type), intent(in) :: interfaces(:)
       type(string_type), allocatable, intent(inout) :: lines(:)
+      character(:), allocatable :: words
       integer :: i
 
-      if (self%increment == 0) return
+      if (self%last%increment == 0) return
       if (size(self%steps) > 0 .and. has_many(size(interfaces))) call append(lines, &
          'largest of all interfaces at the end of each step:')
       if (size(self%steps) > 0) call append(lines, step_head)
@@ -282,26 +237,29 @@ contains
          end do
       end if
       if (size(interfaces) == 0) call add_fields(self, model, lines)
-      if (allocated(self%body_errors)) then
-         if (has_many(size(self%body_errors))) then
-            call add_largest_maxima(model, self%body_errors, lines)
+      if (allocated(self%last%body_uncertainties)) then
+         if (has_many(size(self%last%body_uncertainties))) then
+            call add_largest_maxima(model, self%last%body_uncertainties, lines)
          else
-            do i = 1, size(self%body_errors)
-               call add_maxima(model, self%body_errors(i), i, lines)
+            do i = 1, size(self%last%body_uncertainties)
+               call add_maxima(model, self%last%body_uncertainties(i), i, lines)
             end do
          end if
       end if
-      if (allocated(self%pre_tension)) call add_pre_tensions(self, model, lines)
-      if (allocated(self%inelastic_strain)) call add_strains(self, model, lines)
-      if (.not. ieee_is_nan(self%friction_heat)) call append(lines, summary_line( &
-         'heat of friction', self%friction_heat, history_words(self, model, 'heat_friction'), &
-         unit_label('power', model%units), trim(merge('in all', '      ', size(interfaces) > 1))))
-      if (allocated(self%solid_time)) call append(lines, summary_line('all solid at', &
-         self%solid_time, history_words(self, model, 'solid_time'), or_blank(model%units%time), ''))
+      if (allocated(self%last%pre_tension)) call add_pre_tensions(self, model, lines)
+      if (allocated(self%last%inelastic_strain)) call add_strains(self, model, lines)
+      if (.not. ieee_is_nan(self%last%heat_friction)) call append(lines, summary_line( &
+         'heat of friction', self%last%heat_friction, history_words(self, model, &
+         'heat_friction'), unit_label('power', model%units), trim(merge('in all', '      ', &
+         size(interfaces) > 1))))
+      if (allocated(self%last%solid_time)) call append(lines, summary_line('all solid at', &
+         self%last%solid_time, history_words(self, model, 'solid_time'), or_blank( &
+         model%units%time), ''))
       if (allocated(self%cycle)) call append(lines, self%cycle)
-      if (self%stability /= '') call append(lines, self%stability)
-      if (allocated(self%leading)) call append(lines, leading_words(self%leading, or_blank( &
-         model%units%time)))
+      words = stability_words(self%last, or_blank(model%units%time))
+      if (words /= '') call append(lines, words)
+      words = leading_words(self%last, or_blank(model%units%time))
+      if (words /= '') call append(lines, words)
    end subroutine add_lines
 
    !> The forces of all pre-tension sections.
@@ -309,15 +267,19 @@ contains
       class(summary_type), intent(in) :: self
       type(model_type), intent(in) :: model
       type(string_type), allocatable, intent(inout) :: lines(:)
-      integer :: nodes(size(self%pre_tension, 2)), i, reason
+      integer :: nodes(size(self%last%pre_tension)), i, reason
+      real(dp) :: uncertainty
 
       nodes = section_nodes(model%couplings)
       if (size(nodes) == 0) return
       reason = reason_inside_step(model)
       call append(lines, 'pre-tension')
       do i = 1, size(nodes)
-         associate (force => self%pre_tension(1, i), uncertainty => self%pre_tension(2, i))
-            if (reason == no_reason .and. ieee_is_nan(uncertainty)) reason = no_finer_value
+         uncertainty = ieee_value(1.0_dp, ieee_quiet_nan)
+         if (allocated(self%last%pre_tension_uncertainties)) uncertainty = &
+            self%last%pre_tension_uncertainties(i)
+         if (reason == no_reason .and. ieee_is_nan(uncertainty)) reason = no_finer_value
+         associate (force => self%last%pre_tension(i))
             call append(lines, summary_line('force', force, words_within(force, &
                uncertainty, reason), unit_label('stress length^2', model%units), 'node '// &
                to_text(model%mesh%node_number(nodes(i)))))
@@ -337,7 +299,8 @@ contains
       q = find_quantity(history_estimated, name)
       if (q == 0) return
       words = mark_of(reason_inside_step(model))
-      if (allocated(self%history_errors)) words = uncertainty_words(self%history_errors(q))
+      if (allocated(self%last%history_uncertainties)) words = uncertainty_words( &
+         self%last%history_uncertainties(q))
    end function history_words
 
    !> The largest inelastic strains where they are not among the maxima of bodies.
@@ -348,14 +311,15 @@ contains
       integer :: b, i, reason
 
       do i = 1, size(strain_names)
-         b = maxloc(self%inelastic_strain(i, :), dim=1)
-         if (self%inelastic_strain(i, b) <= 0.0_dp) cycle
+         b = maxloc(self%last%inelastic_strain(i, :), dim=1)
+         if (self%last%inelastic_strain(i, b) <= 0.0_dp) cycle
          reason = reason_inside_step(model)
-         if (reason == no_reason .and. allocated(self%body_errors)) then
-            if (.not. ieee_is_nan(self%body_errors(b)%maxima(first_strain + i)%value)) cycle
+         if (reason == no_reason .and. allocated(self%last%body_uncertainties)) then
+            if (.not. ieee_is_nan(self%last%body_uncertainties(b)%maxima(first_strain + i)%value)) &
+               cycle
             reason = at_corner
          end if
-         call append(lines, summary_line(strain_names(i), self%inelastic_strain(i, b), &
+         call append(lines, summary_line(strain_names(i), self%last%inelastic_strain(i, b), &
             mark_of(reason), '', 'body '//to_text(b)//', at integration points'))
       end do
    end subroutine add_strains
@@ -483,10 +447,11 @@ contains
       character(*), intent(in) :: load_label
       character(:), allocatable :: words
 
-      words = 'time '//to_text(self%time)//' (increment '//to_text(self%increment)//')'
+      words = 'time '//to_text(self%last%time)//' (increment '//to_text(self%last%increment)//')'
       if (load_label /= '' .and. load_label /= 'time') words = words//', '//load_label//' '// &
-         to_text(self%load)
-      if (allocated(self%load_factor)) words = words//', load factor '//to_text(self%load_factor)
+         to_text(self%last%load)
+      if (allocated(self%last%load_factor)) words = words//', load factor '//to_text( &
+         self%last%load_factor)
    end function when
 
    !> The largest quantities of many interfaces, each with its interface.
@@ -500,22 +465,24 @@ contains
       integer :: i, q
 
       call append(lines, 'largest in '//to_text(size(interfaces))//' interfaces ('// &
-         closed_words(self%contacts)//'); /contact of '// &
+         closed_words(self%last%contacts)//'); /contact of '// &
          'the result file has every one, the listing those at the end of each step')
       do q = 1, size(estimated)
          if (estimated(q)%resolution > 0.0_dp) cycle   ! an edge, which is at its own face
-         i = largest_at(estimated(q)%name, self%contacts)
+         i = largest_at(estimated(q)%name, self%last%contacts)
          if (i == 0) cycle
-         if (.not. is_had(estimated(q), model, i, self%contacts(i))) cycle
-         values = contact_values(estimated(q)%name, self%contacts(i))
+         if (.not. is_had(estimated(q), model, i, self%last%contacts(i))) cycle
+         values = contact_values(estimated(q)%name, self%last%contacts(i))
          uncertainty = mark_of(reason_inside_step(model))
-         if (allocated(self%errors)) uncertainty = uncertainty_words(self%errors(q, i))
+         if (allocated(self%last%uncertainties)) uncertainty = uncertainty_words( &
+            self%last%uncertainties(q, i))
          call append(lines, summary_line(words_of(estimated(q)%name), values(1), uncertainty, &
             unit_label(estimated(q)%unit, model%units), interfaces(i)%name))
       end do
       do q = 1, size(worn)
-         i = largest_at(worn(q)%name, self%contacts)
-         if (i > 0) call add_worn(model, self%contacts(i), q, ' of '//interfaces(i)%name, lines)
+         i = largest_at(worn(q)%name, self%last%contacts)
+         if (i > 0) call add_worn(model, self%last%contacts(i), q, ' of '//interfaces(i)%name, &
+            lines)
       end do
    end subroutine add_largest
 
@@ -546,9 +513,9 @@ contains
       integer :: q
 
       do q = 1, size(estimated)
-         if (.not. is_had(estimated(q), model, i, self%contacts(i))) cycle
-         values = contact_values(estimated(q)%name, self%contacts(i))
-         zone = zone_words(estimated(q)%name, self%contacts(i))
+         if (.not. is_had(estimated(q), model, i, self%last%contacts(i))) cycle
+         values = contact_values(estimated(q)%name, self%last%contacts(i))
+         zone = zone_words(estimated(q)%name, self%last%contacts(i))
          name = words_of(estimated(q)%name)
          if (ieee_is_nan(values(1))) then
             if (zone /= '') call append(lines, '  '//name//repeat(' ', value_width - 4)//zone)
@@ -556,27 +523,27 @@ contains
          end if
          if (is_end_of_face(estimated(q), points, values(1))) then
             uncertainty = repeat(' ', uncertainty_width)
-            zone = end_words(estimated(q)%name, self%contacts(i))
-         else if (allocated(self%errors)) then
-            uncertainty = uncertainty_words(self%errors(q, i))
+            zone = end_words(estimated(q)%name, self%last%contacts(i))
+         else if (allocated(self%last%uncertainties)) then
+            uncertainty = uncertainty_words(self%last%uncertainties(q, i))
          else
             uncertainty = mark_of(reason_inside_step(model))
          end if
          line = summary_line(name, values(1), uncertainty, unit_label(estimated(q)%unit, &
             model%units), &
             zone)
-         if (allocated(self%errors) .and. estimated(q)%name == 'peak_pressure') then
-            if (self%errors(q, i)%no_estimate == no_reason .and. rises_to_end(points, &
-               self%contacts(i))) line = line//', at an end, where it may have no limit'
+         if (allocated(self%last%uncertainties) .and. estimated(q)%name == 'peak_pressure') then
+            if (self%last%uncertainties(q, i)%no_estimate == no_reason .and. rises_to_end(points, &
+               self%last%contacts(i))) line = line//', at an end, where it may have no limit'
          end if
-         zone = zones(estimated(q)%name, points, self%contacts(i))
-         if (zone /= '' .and. zone_words(estimated(q)%name, self%contacts(i)) == '') line = &
+         zone = zones(estimated(q)%name, points, self%last%contacts(i))
+         if (zone /= '' .and. zone_words(estimated(q)%name, self%last%contacts(i)) == '') line = &
             line//', '//trim(merge('closed', 'stick ', estimated(q)%name == 'edge_contact'))// &
             ' '//zone
          call append(lines, line)
       end do
       do q = 1, size(worn)
-         call add_worn(model, self%contacts(i), q, '', lines)
+         call add_worn(model, self%last%contacts(i), q, '', lines)
       end do
    end subroutine add_quantities
 

@@ -9,7 +9,7 @@ module increment_quantities
       of_bodies, of_elements, of_history, of_motions, of_passes, of_references, of_sections, &
       quantity_type
    use field_recovery, only: error_record_type
-   use records, only: increment_record_type, stability_record_type
+   use records, only: increment_outcome_type, increment_record_type, stability_record_type
    use solution_report, only: iteration_record_type
    use text, only: counted, few_digits
    implicit none
@@ -220,7 +220,7 @@ contains
 
    !> Whether a state lasts, in words; empty where nothing is known of it.
    pure function stability_words(record, unit) result(words)
-      type(increment_record_type), intent(in) :: record
+      class(increment_outcome_type), intent(in) :: record
       character(*), intent(in) :: unit     !! of time; may be empty
       character(:), allocatable :: words   !! such as 'stable; slowest mode decays in 41 s'
 
@@ -263,24 +263,26 @@ contains
    end function motion_words
 
    !> Growth rates and periods of leading motions in words; empty where none is known.
-   pure function leading_words(leading, unit) result(words)
-      !> (2, motions) as stability_record_type has them; unallocated for none
-      real(dp), allocatable, intent(in) :: leading(:, :)
+   pure function leading_words(record, unit) result(words)
+      class(increment_outcome_type), intent(in) :: record
       character(*), intent(in) :: unit     !! of time; may be empty
       character(:), allocatable :: words
       integer :: i
 
       words = ''
-      if (.not. allocated(leading)) return
-      do i = 1, size(leading, 2)
-         words = words//trim(merge(', ', ': ', i > 1))//' '//few_digits(leading(1, i), 4)
-         if (leading(2, i) > 0.0_dp) words = words//' (period '// &
-            trim(few_digits(leading(2, i), 4)//' '//unit)//')'
-      end do
-      if (unit /= '') words = ' in 1/'//unit//words
-      words = trim(merge('growth rates of the leading modes', &
-         'growth rate of the leading mode  ', size(leading, 2) > 1))//words// &
-         mark_of(no_finer_value)
+      if (.not. allocated(record%stability)) return
+      if (.not. allocated(record%stability%leading)) return
+      associate (leading => record%stability%leading)
+         do i = 1, size(leading, 2)
+            words = words//trim(merge(', ', ': ', i > 1))//' '//few_digits(leading(1, i), 4)
+            if (leading(2, i) > 0.0_dp) words = words//' (period '// &
+               trim(few_digits(leading(2, i), 4)//' '//unit)//')'
+         end do
+         if (unit /= '') words = ' in 1/'//unit//words
+         words = trim(merge('growth rates of the leading modes', &
+            'growth rate of the leading mode  ', size(leading, 2) > 1))//words// &
+            mark_of(no_finer_value)
+      end associate
    end function leading_words
 
    !> A quantity of the bodies, of the elements, of the pre-tension sections, of reference nodes or

@@ -9,11 +9,9 @@ module records
    use zone_edges, only: edges_kept
    implicit none
    private
-   public :: element_points_record_type
-   public :: increment_record_type, contact_record_type, body_uncertainty_type
-   public :: field_record_type, attempt_record_type
-   public :: add_attempts, note_failure
-   public :: uncertainty_type, stability_record_type
+   public :: increment_record_type, increment_outcome_type, contact_record_type, &
+      field_record_type, element_points_record_type, stability_record_type, attempt_record_type, &
+      uncertainty_type, body_uncertainty_type, add_attempts, note_failure
 
    !> Numerical uncertainty (95 %) of a number: how far it may be off to either side.
    type :: uncertainty_type
@@ -128,8 +126,8 @@ module records
       character(:), allocatable :: reason    !! what failed
    end type attempt_record_type
 
-   !> One accepted increment.
-   type, extends(solution_report_type) :: increment_record_type
+   !> What the summary tells of an accepted increment.
+   type, extends(solution_report_type) :: increment_outcome_type
       integer :: step = 0                    !! step number, from 1
       integer :: increment_in_step = 0       !! number in the step, from 1
       logical :: last_of_step = .false.      !! whether the step ends here
@@ -141,23 +139,38 @@ module records
       real(dp), allocatable :: solid_time    !! when the last point became solid, if it did [time]
       real(dp) :: heat_in = 0.0_dp           !! sum of the net rates that are positive [power]
       real(dp) :: heat_out = 0.0_dp          !! magnitude of the sum of the negative ones [power]
+      character(:), allocatable :: cycle     !! what a cycle did that it ends; unallocated for none
+      !> (2, bodies) largest equivalent plastic and creep strain; unallocated without laws
+      real(dp), allocatable :: inelastic_strain(:, :)
+      !> (sections) across pre-tension sections; unallocated before mechanics is solved [force]
+      real(dp), allocatable :: pre_tension(:)
+      real(dp), allocatable :: pre_tension_uncertainties(:)          !! (sections) likewise
+      real(dp) :: heat_friction = 0.0_dp     !! made by friction; NaN without it [power]
+      type(contact_record_type), allocatable :: contacts(:)     !! one an interface
+      !> (quantities, interfaces) of `estimated` of contact_quantities, at the end of a step, with
+      !> ERRORS=FULL of any increment; else unallocated
+      type(uncertainty_type), allocatable :: uncertainties(:, :)
+      type(body_uncertainty_type), allocatable :: body_uncertainties(:)   !! (bodies) likewise
+      !> With ERRORS=FULL of `history_estimated` of increment_quantities; else unallocated
+      type(uncertainty_type), allocatable :: history_uncertainties(:)
+      type(stability_record_type), allocatable :: stability   !! where *STABILITY is due
+   end type increment_outcome_type
+
+   !> One accepted increment.
+   type, extends(increment_outcome_type) :: increment_record_type
       !> Of a transient: error in time over the range of temperatures, and largest change of one.
       real(dp) :: local_error = 0.0_dp, largest_change = 0.0_dp
       !> Of two stages: error of inelastic strains over the largest elastic one, and largest
       !> difference of creep strains by their rates
       real(dp) :: strain_error = 0.0_dp, creep_difference = 0.0_dp
       real(dp) :: strain_growth(2) = 0.0_dp  !! largest of equivalent plastic and creep strain [-]
-      character(:), allocatable :: cycle     !! what a cycle did that it ends; unallocated for none
       !> Stored, dissipated by plasticity, by creep, by friction, work of loads; unallocated without
       !> laws, and where mechanics is not solved [energy]
       real(dp), allocatable :: energies(:)
-      !> (2, bodies) largest equivalent plastic and creep strain; unallocated without laws
-      real(dp), allocatable :: inelastic_strain(:, :)
       logical :: makes_range = .false.       !! whether the range is mostly what it makes itself
       real(dp) :: useful_increment = 0.0_dp  !! shorter ones overshoot beside a jump [time]
       real(dp) :: heat_stored = 0.0_dp       !! by heat capacities; NaN in a steady step [power]
       real(dp) :: heat_dilatation = 0.0_dp   !! by strains; NaN without DILATATION [power]
-      real(dp) :: heat_friction = 0.0_dp     !! made by friction; NaN without it [power]
       !> Work of friction less that of the drive, over the former, where faces slide and are heated
       real(dp), allocatable :: drive_excess
       real(dp) :: slip_part = 0.0_dp         !! largest slip of a contact point over its spacing
@@ -168,30 +181,20 @@ module records
       !> Largest violation of the contact conditions by the recovered displacements, relative; NaN
       !> where they are kept.
       real(dp) :: contact_violation = 0.0_dp
-      !> (sections) across pre-tension sections; unallocated before mechanics is solved [force]
-      real(dp), allocatable :: pre_tension(:)
       !> (6, reference nodes of sections) degrees of freedom 3 to 5 and the external forces on them;
       !> unallocated likewise [length], [-], [force], [force length]
       real(dp), allocatable :: along_z(:, :)
-      type(contact_record_type), allocatable :: contacts(:)     !! one an interface
       integer :: cut_backs = 0               !! attempts at it that failed before
       !> Solutions that properties over temperature or the heat of strains asked for; 0 without them
       integer :: corrections = 0
       logical :: has_new_operators = .false. !! whether they were formed again
       type(attempt_record_type), allocatable :: failed(:)       !! these; unallocated for none
       type(field_record_type) :: fields = field_record_type()   !! fields
-      !> (quantities, interfaces) of `estimated` of contact_quantities, at the end of a step, with
-      !> ERRORS=FULL of any increment; else unallocated
-      type(uncertainty_type), allocatable :: uncertainties(:, :)
-      type(body_uncertainty_type), allocatable :: body_uncertainties(:)   !! (bodies) likewise
       type(uncertainty_type), allocatable :: check_uncertainties(:)  !! (*VERIFY cards) likewise
-      !> With ERRORS=FULL of `history_estimated` of increment_quantities; else unallocated
-      type(uncertainty_type), allocatable :: history_uncertainties(:)
       !> With ERRORS=FULL of displacements and temperatures, for *NODE PRINT; else unallocated
       type(field_record_type), allocatable :: field_uncertainties
       !> (3, *NODE PRINT cards) of the sums of RF1, RF2 and RFL, likewise
       real(dp), allocatable :: total_uncertainties(:, :)
-      real(dp), allocatable :: pre_tension_uncertainties(:)          !! (sections) likewise
       type(contact_record_type), allocatable :: contact_uncertainties(:)   !! for *CONTACT PRINT
       !> Unallocated where the stress is.
       type(error_record_type) :: stress_error = error_record_type()
@@ -199,7 +202,6 @@ module records
       type(error_record_type) :: heat_flux_error = error_record_type()
       !> One an *EL PRINT of the step, empty where its table is not due; unallocated for none.
       type(element_points_record_type), allocatable :: element_points(:)
-      type(stability_record_type), allocatable :: stability   !! where *STABILITY is due
       !> Where a restart is due: what the run needs to go on from here
       type(state_table_type), allocatable :: restart
    end type increment_record_type

@@ -7,7 +7,7 @@ module run_description
    use contact_definitions, only: brings_friction, makes_friction_heat
    use contact_points, only: contact_points_type
    use controls, only: solver_mumps
-   use deck_documents, only: print_document
+   use deck_outcomes, only: print_document
    use deck_preparation, only: prepare_deck, read_deck_type
    use errors, only: error_type
    use interface_warnings, only: gap_range

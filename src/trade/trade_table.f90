@@ -5,7 +5,7 @@ module trade_table
    use errors, only: error_type
    use kinds, only: dp
    use messages, only: print_line
-   use open_files, only: write_file
+   use open_files, only: replace_file
    use reported_quantities, only: traded
    use text, only: few_digits, percent, quoted, to_text, with_decimals
    use trade_study, only: is_there, quantity_count, same_time, target_count, targets, &
@@ -195,7 +195,7 @@ contains
       end do
       text = text//'reference'//repeat(',', 14)//fields([trade%uncertainty, &
          maxval(trade%uncertainty)])//repeat(',', target_count + 1)//new_line('a')
-      call write_file(path, text, error)
+      call replace_file(path, text, error)
    end subroutine write_trade
 
    !> Numbers between commas; absent ones are empty.
