@@ -112,13 +112,19 @@ contains
       character(*), intent(in) :: words
       character(:), allocatable :: string
       character(:), allocatable :: encoded
-      integer :: code, i
+      integer :: code, i, k, more
 
       encoded = as_utf8(words)
       string = '"'
       i = 1
       do while (i <= len(encoded))
-         call take_character(encoded, i, code)
+         code = iachar(encoded(i:i))
+         more = count(code >= [192, 224, 240])
+         if (more > 0) code = mod(code, 2**(6 - more))
+         do k = i + 1, i + more
+            code = 64*code + mod(iachar(encoded(k:k)), 64)
+         end do
+         i = i + 1 + more
          if (code >= 32 .and. code < 127 .and. code /= iachar('"') .and. code /= iachar('\')) then
             string = string//achar(code)
          else if (code < 65536) then
@@ -129,22 +135,6 @@ contains
       end do
       string = string//'"'
    end function quoted
-
-   !> The code of a character in UTF-8, and where the next one begins.
-   pure subroutine take_character(string, i, code)
-      character(*), intent(in) :: string             ! UTF-8
-      integer, intent(inout) :: i
-      integer, intent(out) :: code
-      integer :: k, more
-
-      code = iachar(string(i:i))
-      more = count(code >= [192, 224, 240])
-      if (more > 0) code = mod(code, 2**(6 - more))
-      do k = i + 1, i + more
-         code = 64*code + mod(iachar(string(k:k)), 64)
-      end do
-      i = i + 1 + more
-   end subroutine take_character
 
    pure function escaped(code) result(string)
       integer, intent(in) :: code

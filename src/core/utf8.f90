@@ -45,6 +45,7 @@ contains
       character(*), intent(in) :: string           !! any bytes
       character(:), allocatable :: shown           !! UTF-8 without control characters
       integer :: i, k, length, n
+      logical :: is_shown
 
       do i = 1, len(string)
          if (iachar(string(i:i)) < 32 .or. iachar(string(i:i)) > 126) exit
@@ -58,7 +59,11 @@ contains
       i = 1
       do while (i <= len(string))
          length = character_length(string, i)
-         if (length > 0 .and. .not. is_control(string, i)) then
+         is_shown = length > 0 .and. iachar(string(i:i)) >= 32 .and. iachar(string(i:i)) /= 127
+         ! Those of Unicode beyond ASCII.
+         if (is_shown .and. iachar(string(i:i)) == 194) is_shown = iachar(string(i + 1:i + 1)) >= &
+            160
+         if (is_shown) then
             shown(n + 1:n + length) = string(i:i + length - 1)
             n = n + length
          else
@@ -73,15 +78,6 @@ contains
       end do
       shown = shown(:n)
    end function printable
-
-   !> Whether the character of UTF-8 at a byte is one of Unicode's control characters.
-   pure logical function is_control(string, i)
-      character(*), intent(in) :: string
-      integer, intent(in) :: i
-
-      is_control = iachar(string(i:i)) < 32 .or. iachar(string(i:i)) == 127
-      if (iachar(string(i:i)) == 194) is_control = iachar(string(i + 1:i + 1)) < 160
-   end function is_control
 
    pure character function digit(number)
       integer, intent(in) :: number

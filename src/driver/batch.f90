@@ -74,6 +74,7 @@ contains
       integer, intent(out) :: status              !! the largest of all
       type(batch_type) :: self
       type(error_type), allocatable :: error
+      character(:), allocatable :: line
       integer :: i, lock
       logical :: has_collected
       real(dp) :: since
@@ -96,7 +97,10 @@ contains
          call start_decks(self)
          call collect(self, has_collected)
          call pass_on_signals(self)
-         call show_progress(self)
+         line = to_text(self%ended)//' of '//counted(size(self%outcomes), self%noun)//' ended, '// &
+            to_text(count(self%running%deck > 0))//' running, '//to_text(self%failed)//' failed'
+         if (caught_signal() /= '') line = line//'; ending after their increments, again to kill'
+         call self%progress%say(line)
          call renew_table(self)
          if (.not. has_collected) call pause_briefly()
       end do
@@ -161,14 +165,10 @@ contains
    subroutine write_table(self, error)
       type(batch_type), intent(in) :: self
       type(error_type), allocatable, intent(out) :: error
-      character(:), allocatable :: path
 
-      path = batch_table_of(self%command)
-      if (self%command%table == '') then
-         call write_batch(path, self%outcomes, error)
-      else
-         call write_batch(path, self%outcomes, error, self%table%names, self%table%values)
-      end if
+      ! Without a table of values its arrays are unallocated, that is, not present.
+      call write_batch(batch_table_of(self%command), self%outcomes, error, self%table%names, &
+         self%table%values)
    end subroutine write_table
 
    !> Two decks with the same results are an error before anything runs.
@@ -376,16 +376,6 @@ contains
          call self%running(s)%child%send_signal(kills=.not. is_first)
       end do
    end subroutine pass_on_signals
-
-   subroutine show_progress(self)
-      type(batch_type), intent(inout) :: self
-      character(:), allocatable :: line
-
-      line = to_text(self%ended)//' of '//counted(size(self%outcomes), self%noun)//' ended, '// &
-         to_text(count(self%running%deck > 0))//' running, '//to_text(self%failed)//' failed'
-      if (caught_signal() /= '') line = line//'; ending after their increments, again to kill'
-      call self%progress%say(line)
-   end subroutine show_progress
 
    !> Writes the table again where that is due. What goes wrong shows at the end, in the last one.
    subroutine renew_table(self)

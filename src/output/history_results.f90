@@ -20,9 +20,7 @@ module history_results
    type :: set_history_type
       character(:), allocatable :: group                     !! its path
       character(:), allocatable :: above                     !! path of the group above
-      logical :: is_of_nodes = .true.                        !! else of integration points
-      character(:), allocatable :: set                       !! name of the set
-      integer, allocatable :: member(:), point(:)            !! as of requested_table_type
+      type(requested_table_type) :: table                    !! the first of the set
       integer, allocatable :: number(:)                      !! of its nodes or elements in the deck
       character(:), allocatable :: name_of_numbers           !! node or element
       type(string_type), allocatable :: names(:)             !! of the datasets, as they are below
@@ -96,7 +94,7 @@ contains
       type(requested_table_type), intent(in) :: table
 
       do place = size(self%histories), 1, -1
-         associate (its => self%histories(place))
+         associate (its => self%histories(place)%table)
             if (its%is_of_nodes .neqv. table%is_of_nodes) cycle
             if (its%set /= table%set .or. size(its%member) /= size(table%member)) cycle
             if (all(its%member == table%member)) return
@@ -113,12 +111,15 @@ contains
       type(set_history_type), intent(inout) :: history
       integer :: i
 
-      history%is_of_nodes = table%is_of_nodes
-      history%set = table%set
-      history%member = table%member
-      if (allocated(table%point)) history%point = table%point
+      history%table = table
       history%above = trim(above(merge(1, 2, table%is_of_nodes)))
-      history%group = history%above//'/'//as_link(table%set)
+      ! HDF5 takes neither a slash nor a point alone for a name.
+      history%group = table%set
+      if (history%group == '.') history%group = '|'
+      do i = 1, len(history%group)
+         if (history%group(i:i) == '/') history%group(i:i) = '|'
+      end do
+      history%group = history%above//'/'//history%group
       ! Two sets may have one name: that of all nodes, and one of the deck.
       do i = 1, size(self%histories)
          if (self%histories(i)%group == history%group) history%group = history%group//' (2)'
@@ -138,19 +139,6 @@ contains
       history%sets(2) = growing_dataset(history%group//'/time', as_real, 0, 1, expected, &
          'total time at the end of the increment', 'time')
    end subroutine start_history
-
-   !> A name as HDF5 takes it for one.
-   pure function as_link(name) result(link)
-      character(*), intent(in) :: name
-      character(len(name)) :: link
-      integer :: i
-
-      link = name
-      if (name == '.') link = '|'
-      do i = 1, len(name)
-         if (name(i:i) == '/') link(i:i) = '|'
-      end do
-   end function as_link
 
    subroutine add_dataset(history, column, width, expected, suffix)
       type(set_history_type), intent(inout) :: history
@@ -313,8 +301,8 @@ contains
       call file%create_group(history%group)
       call write_integers(file, history%group//'/'//history%name_of_numbers, history%number, &
          as_integer, 'number of the '//history%name_of_numbers//' in the deck')
-      if (allocated(history%point)) call write_integers(file, history%group//'/point', &
-         history%point, as_integer, 'number of the integration point in its element')
+      if (allocated(history%table%point)) call write_integers(file, history%group//'/point', &
+         history%table%point, as_integer, 'number of the integration point in its element')
    end subroutine start_group
 
 end module history_results

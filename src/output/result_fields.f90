@@ -211,9 +211,9 @@ contains
          associate (at_nodes => interfaces(i)%at_face_nodes, &
             of_points => contact_values(name, record%contacts(i)))
             if (name == 'status') then
-               ! Not interpolated: that of the nearest contact point.
-               face = [(nearest_value(at_nodes%coefficients_of(k), &
-                  of_points(at_nodes%values_of(k))), k=1, at_nodes%count)]
+               ! Not interpolated: that of the nearest contact point, of two as near the larger one.
+               face = [(maxval(of_points(at_nodes%values_of(k)), mask=at_nodes%coefficients_of(k) &
+                  >= maxval(at_nodes%coefficients_of(k))), k=1, at_nodes%count)]
             else
                face = spread(0.0_dp, 1, at_nodes%count)
                call at_nodes%add_totals(of_points, face)
@@ -229,13 +229,6 @@ contains
          end associate
       end do
    end function face_values
-
-   !> The value with the largest share; midway between two the larger one.
-   pure real(dp) function nearest_value(share, values)
-      real(dp), intent(in) :: share(:), values(:)
-
-      nearest_value = maxval(values, mask=share >= maxval(share))
-   end function nearest_value
 
    !> Creates the groups of `/VTKHDF` and writes the mesh and the data that do not vary.
    subroutine write_head(self, file, model, element_points)

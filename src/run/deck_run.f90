@@ -21,7 +21,7 @@ module deck_run
    use model, only: model_type, uncertainty_full
    use processes, only: set_reason
    use records, only: increment_record_type
-   use restarts, only: go_on
+   use restarts, only: bring_to
    use run_description, only: describe_run
    use run_output, only: run_output_type
    use simulation, only: simulation_type
@@ -99,6 +99,7 @@ contains
       type(adaptive_rounds_type), intent(inout) :: rounds
       type(error_type), allocatable :: error
       real(dp) :: since
+      integer :: n
 
       since = wall_seconds()
       allocate (self%model, self%simulation, self%output)
@@ -123,9 +124,11 @@ contains
                output%run%seconds_before = self%deck%origin%seconds
                outcome%report%iterations = self%deck%origin%iterations
             end if
+            n = size(model%mesh%element_kind)
             if (model%uncertainty == uncertainty_full .and. .not. (self%command%quiet .or. &
-               output%kept_round > 0)) call &
-               print_line(output_unit, self%path//': '//cost_words(model))
+               output%kept_round > 0)) call print_line(output_unit, self%path//': ERRORS=FULL '// &
+               'solves the deck once more beside itself, with '//to_text(4*n)//' elements for '// &
+               to_text(n)//' and increments half as long: 4 to 12 times the time of ERRORS=NO')
             call solve_deck(self, rounds, error)
             if (allocated(error)) call report_failure(self, error, is_told=.false.)
             ! Of a run that could not go on for want of a file or of memory a check says nothing.
@@ -140,18 +143,6 @@ contains
       end associate
       deallocate (self%model, self%simulation, self%output)
    end subroutine solve_round
-
-   !> What ERRORS=FULL costs.
-   function cost_words(model) result(words)
-      type(model_type), intent(in) :: model
-      character(:), allocatable :: words
-
-      associate (elements => size(model%mesh%element_kind))
-         words = 'ERRORS=FULL solves the deck once more beside itself, with '// &
-            to_text(4*elements)//' elements for '//to_text(elements)//' and increments half '// &
-            'as long: 4 to 12 times the time of ERRORS=NO'
-      end associate
-   end function cost_words
 
    !> All that comes before the first increment. A first round touches no file before its deck is
    !> found sound; a later one can say in the listing what ends it.
@@ -189,7 +180,8 @@ contains
             call self%simulation%assemble(self%model)
             call self%output%progress%say('reducing')
             if (allocated(self%deck%origin)) then
-               call go_on(self%model, self%simulation, self%deck%origin%table, error)
+               call self%deck%origin%table%begin_restoring()
+               call bring_to(self%model, self%simulation, self%deck%origin%table, error)
             else
                call self%simulation%reduce(self%model, error)
             end if

@@ -45,6 +45,7 @@ contains
       type(loads_type), intent(inout), target :: loads   !! moved along
       type(solution_state_type), intent(in) :: state   !! at the last point
       type(error_type), allocatable, intent(out) :: error
+      integer :: k
 
       if (.not. bodies%is_coupled) then
          call set_error(error, status_no_convergence, 'no conductance depends on gap or '// &
@@ -86,24 +87,14 @@ contains
          self%is_last = .true.
          self%ending = 'it has as many points as POINTS= allows'
       end if
-      call check_friction(self, error)
-   end subroutine find_point
-
-   !> Slip that reverses depends on the way to a point.
-   !> Error: a contact point slips against its slip before.
-   subroutine check_friction(self, error)
-      type(branch_type), intent(in) :: self
-      type(error_type), allocatable, intent(out) :: error
-      integer :: k
-
+      ! Slip that reverses depends on the way to a point.
       k = findloc(self%contact%direction*self%direction < 0, .true., dim=1)
-      if (k == 0) return
-      call set_error(error, status_no_convergence, 'friction reverses in contact pair '// &
-         self%bodies%interfaces(count(self%bodies%points%interface_start <= k))%name// &
-         ' at load factor '//to_text(self%point%factor)//', and a solution behind that depends '// &
-         'on the way to it; end the branch before, by HIGHEST= or LOWEST= of *CONTINUATION, or '// &
-         'leave out friction')
-   end subroutine check_friction
+      if (k > 0) call set_error(error, status_no_convergence, &
+         'friction reverses in contact pair '//bodies%interfaces(count( &
+         bodies%points%interface_start <= k))%name//' at load factor '//to_text( &
+         self%point%factor)//', and a solution behind that depends on the way to it; end '// &
+         'the branch before, by HIGHEST= or LOWEST= of *CONTINUATION, or leave out friction')
+   end subroutine find_point
 
    !> Takes the point as the last one of the branch; the first one by its load factor.
    subroutine accept_point(self, factor)
@@ -295,6 +286,7 @@ contains
       type(branch_type), intent(inout) :: self
       real(dp), intent(in) :: reach         ! of the kink
       type(error_type), allocatable, intent(out) :: error
+      type(branch_point_type) :: behind
 
       self%point = self%measure%moved(self%from, 2*reach*self%from%tangent)
       self%fixed_coordinate = self%measure%kinked(self%from, self%point)
@@ -305,7 +297,14 @@ contains
       if (self%has_converged) then
          self%is_fold = turns(self%from, self%point)
          if (self%is_fold) then
-            call meet_corner(self, self%point, error)
+            ! The branch goes on from the corner as behind it.
+            behind = self%point
+            self%fixed_coordinate = self%measure%kinked(self%from, behind)
+            self%point = self%measure%at_kink(self%from, behind)
+            call self%try_step(0.0_dp, error)
+            self%fixed_coordinate = 0
+            self%outcome = merge(is_found, is_lost, self%has_converged)
+            self%point%tangent = behind%tangent
             self%from = self%base
             if (allocated(error) .or. self%outcome == is_found) return
          else
@@ -319,23 +318,6 @@ contains
       end if
       call lose(self, error)
    end subroutine turn_corner
-
-   !> The corner between a point just before it and one behind it, where the coordinate that passes
-   !> a kink has its value; the branch goes on from it as behind.
-   subroutine meet_corner(self, behind, error)
-      type(branch_type), intent(inout) :: self
-      type(branch_point_type), intent(in) :: behind
-      type(error_type), allocatable, intent(out) :: error
-      real(dp) :: tangent(size(behind%tangent))
-
-      tangent = behind%tangent
-      self%fixed_coordinate = self%measure%kinked(self%from, behind)
-      self%point = self%measure%at_kink(self%from, behind)
-      call self%try_step(0.0_dp, error)
-      self%fixed_coordinate = 0
-      self%outcome = merge(is_found, is_lost, self%has_converged)
-      self%point%tangent = tangent
-   end subroutine meet_corner
 
    !> The fold between the start of the last step and its end; where the coordinate of a contact
    !> point passes a kink there, it is a corner.

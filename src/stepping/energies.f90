@@ -39,7 +39,7 @@ contains
       type(solution_state_type), intent(inout) :: next       !! at its end
       type(increment_record_type), intent(inout) :: record
       type(point_fields_type) :: after
-      real(dp) :: forces(2, size(next%temperature))
+      real(dp) :: forces(2, size(next%temperature)), temperature(size(next%temperature))
 
       forces = record%fields%external_force
       if (allocated(run%state%reaction)) forces = forces + run%state%reaction + on_nodes( &
@@ -47,10 +47,17 @@ contains
       next%work(2) = next%work(2) + dot_product([forces], next%displacement - &
          run%state%displacement)/2 + work_of_overlaps(run%bodies%points, run%state, next)
       after = fields_of(run, model, next)
-      if (heats(model, run%state, next)) then
+      temperature = model%initial_temperature
+      if (allocated(run%state%stress_temperature)) temperature = run%state%stress_temperature
+      if (any(abs(next%stress_temperature - temperature) > 0.0_dp)) then
          if (.not. allocated(run%point_fields%stress)) run%point_fields = fields_of(run, model, &
             run%state)
-         next%work(2) = next%work(2) + work_of_temperatures(run%point_fields, after)
+   ! On strains that temperatures free, and what elasticity that follows them adds to the energy.
+         associate (before => run%point_fields)
+            next%work(2) = next%work(2) + dot_product(after%volume, sum(after%stress* &
+               before%elastic - before%stress*after%elastic - (before%stress + after%stress)* &
+               (after%free - before%free), dim=1))/2
+         end associate
       end if
       run%point_fields = after
       record%energies = [after%energies, next%work]
@@ -73,27 +80,6 @@ contains
             points%normal, dim=1)
       end function distance
    end function work_of_overlaps
-
-   !> Whether temperatures change in an increment.
-   pure logical function heats(model, before, after)
-      type(model_type), intent(in) :: model
-      type(solution_state_type), intent(in) :: before, after
-
-      if (allocated(before%stress_temperature)) then
-         heats = any(abs(after%stress_temperature - before%stress_temperature) > 0.0_dp)
-      else
-         heats = any(abs(after%stress_temperature - model%initial_temperature) > 0.0_dp)
-      end if
-   end function heats
-
-   !> Work of the stresses on strains that temperatures free, and what elasticity that follows them
-   !> adds to the energy that is stored.
-   pure real(dp) function work_of_temperatures(before, after) result(work)
-      type(point_fields_type), intent(in) :: before, after   ! at both ends of the increment
-
-      work = dot_product(after%volume, sum(after%stress*before%elastic - before%stress* &
-         after%elastic - (before%stress + after%stress)*(after%free - before%free), dim=1))/2
-   end function work_of_temperatures
 
    !> Fields of a state at all integration points, and its energies.
    function fields_of(run, model, state) result(found)

@@ -73,6 +73,7 @@ contains
       type(error_type), allocatable, intent(out) :: error
       type(solution_state_type) :: start    ! state at its start
       type(increment_record_type) :: first  ! record of the first of two stages
+      real(dp), allocatable :: none(:)
 
       ! An attempt that fails leaves nothing behind, not even in the last digits.
       if (allocated(run%known)) attempt%known = run%known
@@ -85,8 +86,14 @@ contains
          stage%duration = stage%size
          stage%strains = solves_mechanics(step%analysis)
          stage%begins_step = run%control%increments_of_step == 0
-         call return_to_elasticity(run, model, stage%begins_step, error)
-         if (allocated(error)) return
+         ! Without the tangents of laws where loads may turn round, as a step begins, and behind an
+         ! attempt that failed: bodies that unload are far stiffer than their tangents.
+         if (allocated(run%bodies%tangent) .and. (stage%begins_step .or. run%control%cut_backs > &
+            0)) then
+            call run%bodies%move_operators(model, run%bodies%operators_at, none)
+            call run%reduce(model, error)
+            if (allocated(error)) return
+         end if
          stage%passing%instants = run%control%step_start + [run%control%step_time, clock%step_time]
          if (allocated(run%state%history)) stage%history = run%state%history
          if (step%is_transient .or. step%is_viscous) then
@@ -115,22 +122,6 @@ contains
             run%control%size_to(clock), attempt%record)
       end associate
    end subroutine attempt_increment
-
-   !> Forms the operators without the tangents of laws where loads may turn round, as a step begins,
-   !> and behind an attempt that failed: bodies that unload are far stiffer than their tangents.
-   !> Errors: as reduce.
-   subroutine return_to_elasticity(run, model, begins_step, error)
-      type(simulation_type), intent(inout) :: run
-      type(model_type), intent(in) :: model
-      logical, intent(in) :: begins_step
-      type(error_type), allocatable, intent(out) :: error
-      real(dp), allocatable :: none(:)
-
-      if (.not. allocated(run%bodies%tangent)) return
-      if (.not. (begins_step .or. run%control%cut_backs > 0)) return
-      call run%bodies%move_operators(model, run%bodies%operators_at, none)
-      call run%reduce(model, error)
-   end subroutine return_to_elasticity
 
    !> Whether plastic strains grow by no more than the step allows an increment; where increments
    !> are fixed they may, unless forces are those of rounding.
@@ -264,14 +255,19 @@ contains
          to_text(most_turns)//' turns')
    end subroutine solve_on_faces
 
-   !> Completes the last solution of a stage that is solved in turns.
+   !> Completes the last solution of a stage that is solved in turns, and finds its gain.
    subroutine end_turns(run, model, attempt, error)
       type(simulation_type), intent(inout) :: run
       type(model_type), intent(in) :: model
       type(attempt_type), intent(inout) :: attempt
       type(error_type), allocatable, intent(out) :: error
 
-      call judge_last(run, model, attempt)
+      if (run%bodies%is_coupled .and. solves_repeatedly(run) .and. .not. &
+         attempt%data%equation%is_explicit() .and. &
+         model%steps(run%control%step)%fixed_point%finds_gain) then
+         call judge_solution(run%bodies, run%heat_reductions(run%in_use), attempt%trial_type)
+         attempt%record%solution_report_type = attempt%workspace%record
+      end if
       if (allocated(run%bodies%worn)) then
          call wear_faces(run%bodies, attempt%before, attempt%wear_by_pressure, attempt%next)
          call run%bodies%wear_to(attempt%next%wear)
@@ -282,19 +278,6 @@ contains
       attempt%next%faces_at = run%bodies%faces_at
       call check_slip(run%bodies, model, attempt%before, attempt%next, attempt%record, error)
    end subroutine end_turns
-
-   !> Finds the gain of the last of several solutions of a stage.
-   subroutine judge_last(run, model, attempt)
-      type(simulation_type), intent(in) :: run
-      type(model_type), intent(in) :: model
-      type(attempt_type), intent(inout) :: attempt
-
-      if (.not. (run%bodies%is_coupled .and. solves_repeatedly(run))) return
-      if (attempt%data%equation%is_explicit() .or. .not. &
-         model%steps(run%control%step)%fixed_point%finds_gain) return
-      call judge_solution(run%bodies, run%heat_reductions(run%in_use), attempt%trial_type)
-      attempt%record%solution_report_type = attempt%workspace%record
-   end subroutine judge_last
 
    !> Whether a stage is solved again until what it was solved with is that of its solution.
    pure logical function solves_repeatedly(run)

@@ -179,6 +179,11 @@ contains
    !> Whether an increment of a transient errs or changes temperatures by more than the step allows,
    !> and may be shorter. Beside temperatures that jump as a step begins none is shorter than heat
    !> takes to cross an element, until one errs by no more than the step allows.
+   !>
+   !> Nor where an increment errs by the same part of the range of temperatures as a longer attempt,
+   !> however short: bodies leave one temperature, and heat that grows from nothing changes it by a
+   !> power of time, which makes the range, too. What it errs is none beside later ranges, since
+   !> changes fall at least as fast as the size.
    pure logical function goes_too_far(self, model, increment_size, record)
       class(increment_control_type), intent(in) :: self   !! position in the steps
       type(model_type), intent(in) :: model
@@ -187,27 +192,15 @@ contains
 
       goes_too_far = .false.
       if (.not. adapts_increments(model%steps(self%step))) return
-      if (errs_alike(self, increment_size, record)) return
+      associate (size_before => self%longer(1), error => self%longer(2), change => self%longer(3))
+         if (record%makes_range .and. size_before > 0.0_dp .and. abs(record%local_error - error) &
+            <= same*error .and. record%largest_change*size_before <= (1.0_dp + same)*change* &
+            increment_size) return
+      end associate
       goes_too_far = excess(model%steps(self%step), record) > allowance .and. &
          self%can_cut_back(model, increment_size) .and. &
          0.5_dp*increment_size > hardly_longer*self%useful_size(model%steps(self%step), record)
    end function goes_too_far
-
-   !> Whether an increment errs by the same part of the range of temperatures as a longer attempt,
-   !> however short: bodies leave one temperature, and heat that grows from nothing changes it by a
-   !> power of time, which makes the range, too. What it errs is none beside later ranges, since
-   !> changes fall at least as fast as the size.
-   pure logical function errs_alike(self, increment_size, record)
-      type(increment_control_type), intent(in) :: self
-      real(dp), intent(in) :: increment_size
-      type(increment_record_type), intent(in) :: record
-
-      associate (size_before => self%longer(1), error => self%longer(2), change => self%longer(3))
-         errs_alike = record%makes_range .and. size_before > 0.0_dp .and. &
-            abs(record%local_error - error) <= same*error .and. &
-            record%largest_change*size_before <= (1.0_dp + same)*change*increment_size
-      end associate
-   end function errs_alike
 
    !> Size below which an increment is not shortened for what it errs.
    pure real(dp) function useful_size(self, step, record)

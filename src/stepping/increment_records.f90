@@ -263,7 +263,8 @@ contains
       type(contact_record_type), intent(inout) :: record   ! with the conductances of the others
       type(conductance_law_type) :: law
       real(dp) :: rounding
-      integer :: beside, k
+      integer, allocatable :: around(:)
+      integer :: beside, k, n
 
       do k = 1, size(rests)
          if (points%weight(k) > 0.0_dp .or. .not. closed(k)) cycle
@@ -271,8 +272,13 @@ contains
          associate (row => first - 1 + k)
             ! A force that a gap of rounding takes away is none.
             rounding = no_gap*points%edge(k)*bodies%equilibrium%contact%alone(row)
-            if (next%contact%force(row) <= rounding) beside = resting_beside(points%beside(k), &
-               next%resting(first:first - 1 + size(rests)), record%pressure)
+            if (next%contact%force(row) <= rounding) then
+               ! None beside it presses. Where the law jumps, both conduct the same, between the
+               ! values of the open and the closed law.
+               around = points%beside(k)
+               n = findloc(next%resting(first - 1 + around), .true., dim=1)
+               if (n > 0 .and. .not. any(record%pressure(around) > 0.0_dp)) beside = around(n)
+            end if
             if (beside > 0) then
                record%conductance(k) = record%conductance(beside)
             else if (rests(k)) then
@@ -284,19 +290,6 @@ contains
          end associate
       end do
    end subroutine conduct_on_axis
-
-   !> A contact point beside another one that rests while none beside it presses; 0 for none. Where
-   !> the law jumps, both conduct the same, between the values of the open and the closed law.
-   pure integer function resting_beside(beside, resting, pressure)
-      integer, intent(in) :: beside(:)                     ! contact points beside it
-      logical, intent(in) :: resting(:)                    ! (m)
-      real(dp), intent(in) :: pressure(:)                  ! (m) 0 where it rests [stress]
-      integer :: n
-
-      n = findloc(resting(beside), .true., dim=1)
-      resting_beside = 0
-      if (n > 0 .and. .not. any(pressure(beside) > 0.0_dp)) resting_beside = beside(n)
-   end function resting_beside
 
    !> The interfaces in a state, without slip, temperatures, conductance and heat flux.
    subroutine contacts_of_state(bodies, state, contacts)

@@ -28,8 +28,8 @@ module operator_corrections
    use heat_equation, only: heat_equation_type
    use increment_data, only: stage_type
    use kinds, only: dp
-   use materials, only: has_law, section_type, varies
-   use mesh, only: mesh_type, nodes_per_element
+   use materials, only: has_law, varies
+   use mesh, only: nodes_per_element
    use mesh_bodies, only: body_name
    use model, only: model_type
    use material_laws, only: law_points_type
@@ -121,7 +121,8 @@ contains
       type(model_type), intent(in) :: model
       real(dp), allocatable, intent(in) :: initial_force(:)  !! (2 nodes) or none [force]
       logical :: follows(0:model%mesh%body_count)      ! bodies, none of them first
-      integer :: e
+      integer, allocatable :: bodies(:)
+      integer :: e, i
 
       follows = .false.
       associate (mesh => model%mesh)
@@ -129,8 +130,14 @@ contains
             if (varies(model%materials(model%sections(mesh%element_section(e))% &
                material))) follows(mesh%element_body(e)) = .true.
          end do
+         ! Bodies that have a strain along z in common follow together, chains of them, too.
          do e = 1, size(model%sections)
-            call follow_others(mesh, model%sections, follows)
+            do i = 1, size(model%sections)
+               if (model%sections(i)%reference(1) == 0) cycle
+               bodies = pack(mesh%element_body, model%sections(mesh%element_section)% &
+                  reference(1) == model%sections(i)%reference(1))
+               if (any(follows(bodies))) follows(bodies) = .true.
+            end do
          end do
          self%elements = pack([(e, e=1, size(mesh%element_body))], follows(mesh%element_body))
          self%follows = follows(mesh%node_body)
@@ -156,23 +163,6 @@ contains
          model%materials, model%orientations, load_rules())
    end subroutine prepare
 
-   !> Bodies that have a strain along z in common follow together.
-   pure subroutine follow_others(mesh, sections, follows)
-      type(mesh_type), intent(in) :: mesh
-      type(section_type), intent(in) :: sections(:)
-      logical, intent(inout) :: follows(0:)            ! bodies, none of them first
-      logical :: along_z(size(mesh%element_body))      ! elements that have it
-      integer :: i
-
-      do i = 1, size(sections)
-         if (sections(i)%reference(1) == 0) cycle
-         along_z = sections(mesh%element_section)%reference(1) == sections(i)%reference(1)
-         if (any(follows(pack(mesh%element_body, along_z)))) then
-            follows(pack(mesh%element_body, along_z)) = .true.
-         end if
-      end do
-   end subroutine follow_others
-
    !> Starts a stage, from the corrections of the last increments where these are of the present
    !> operators.
    subroutine begin(self, model, bodies, stage, before, takes_past)
@@ -182,6 +172,7 @@ contains
       type(stage_type), intent(in) :: stage
       type(solution_state_type), intent(in) :: before        !! state at its start
       logical, intent(in) :: takes_past                      !! whether K T_i stands in eq. (3.4)
+      real(dp), allocatable :: displacement(:)               ! from which it begins
       logical :: goes_on
 
       call self%begin_again()
@@ -203,8 +194,10 @@ contains
       if (takes_past .or. .not. goes_on) self%heat_before = self%heat_beyond(model, bodies, &
          before%temperature)
       if (.not. goes_on) then
-         self%values = corrections_of(self, model, bodies, before%temperature, &
-            foreseen(self, before))
+         displacement = before%displacement
+         if (foresees(self, before)) displacement = displacement + stage%size/ &
+            before%increment_size*(displacement - before%displacement_before)
+         self%values = corrections_of(self, model, bodies, before%temperature, displacement)
       else
          self%values = before%corrections
          associate (n => size(before%temperature))
@@ -239,17 +232,6 @@ contains
       foresees = self%has_laws .and. allocated(before%displacement_before) .and. .not. &
          self%stage%begins_step .and. self%stage%passing%real_part > 0.0_dp
    end function foresees
-
-   !> Displacements from which a stage begins.
-   pure function foreseen(self, before) result(displacement)
-      class(corrections_type), intent(in) :: self
-      type(solution_state_type), intent(in) :: before
-      real(dp) :: displacement(size(before%displacement))
-
-      displacement = before%displacement
-      if (foresees(self, before)) displacement = displacement + self%stage%size/ &
-         before%increment_size*(displacement - before%displacement_before)
-   end function foreseen
 
    !> Gives a stage its corrections: heat to its equation, forces to its state.
    subroutine give(self, equation, next)
@@ -314,8 +296,10 @@ contains
          words = 'heat and stress of bodies do not follow their temperatures'
          if (self%has_laws) words = &
             'stresses of bodies that yield or creep do not follow their strains'
-         words = words//' within '//to_text(most_passes)//' corrections; most is left over '// &
-            words_of_place(model, node_of(self, maxloc(abs(left_over), dim=1)))
+         associate (n => size(self%follows), i => maxloc(abs(left_over), dim=1))
+            words = words//' within '//to_text(most_passes)//' corrections; most is left over '// &
+               words_of_place(model, merge(1 + modulo(i - 1, n), (i - 2*n + 1)/2, i <= 2*n))
+         end associate
          call set_error(error, status_no_convergence, words)
          return
       end if
@@ -409,16 +393,6 @@ contains
       if (model%mesh%node_body(node) > 0) words = words//' in '//body_name(model, &
          model%mesh%node_body(node))
    end function words_of_place
-
-   !> Node that one of the values belongs to.
-   pure integer function node_of(self, value) result(node)
-      type(corrections_type), intent(in) :: self
-      integer, intent(in) :: value                           ! index
-
-      associate (n => size(self%follows))
-         node = merge(1 + modulo(value - 1, n), (value - 2*n + 1)/2, value <= 2*n)
-      end associate
-   end function node_of
 
    !> Forgets the passes before.
    subroutine start_mixing(self)
@@ -605,6 +579,7 @@ contains
       real(dp), intent(in) :: displacement(:)                ! (2 nodes) [length]
       real(dp) :: forces(size(displacement))                 ! (2 nodes) [force]
       real(dp), dimension(2, size(temperature)) :: balance, u
+      real(dp) :: sums(size(displacement))
       type(law_points_type) :: points
       real(dp) :: of_nodes(2, nodes_per_element + 2), warming(size(temperature))
       integer :: i
@@ -618,7 +593,13 @@ contains
       call self%points%set_temperature(model%mesh, temperature, model%initial_temperature)
       warming = temperature - model%initial_temperature
       u = reshape(displacement, shape(u))
-      balance = reshape(of_operators(), shape(balance))
+      ! What the operators have, bars aside, for the forces of the stresses.
+      sums = bodies%mechanical%matrix%multiply(displacement)
+      if (allocated(bodies%bar_stiffness%value)) sums = sums - &
+         bodies%bar_stiffness%multiply(displacement)
+      if (allocated(bodies%thermal_load%value)) sums = sums - bodies%thermal_load%multiply(warming)
+      if (allocated(bodies%bar_load%value)) sums = sums + bodies%bar_load%multiply(warming)
+      balance = reshape(sums, shape(balance))
       do i = 1, size(self%elements)
          associate (mesh => model%mesh, e => self%elements(i), nodes => model%mesh%element_nodes( &
             :element_node_count(model%mesh%element_kind(self%elements(i))), self%elements(i)))
@@ -637,18 +618,6 @@ contains
          end associate
       end do
       forces = merge([balance], forces, [spread(self%follows, 1, 2)])
-   contains
-      !> What the operators have, bars aside, for the forces of the stresses.
-      function of_operators() result(sums)
-         real(dp) :: sums(2*size(temperature))
-
-         sums = bodies%mechanical%matrix%multiply(displacement)
-         if (allocated(bodies%bar_stiffness%value)) sums = sums - &
-            bodies%bar_stiffness%multiply(displacement)
-         if (allocated(bodies%thermal_load%value)) sums = sums - &
-            bodies%thermal_load%multiply(warming)
-         if (allocated(bodies%bar_load%value)) sums = sums + bodies%bar_load%multiply(warming)
-      end function of_operators
    end function forces_beyond
 
    !> Tangents of the stress at a solution, where materials have laws.

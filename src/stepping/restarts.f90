@@ -16,7 +16,7 @@ module restarts
    use steps, only: solves_heat
    implicit none
    private
-   public :: keep_restart, go_on, bring_to, exchange_run
+   public :: keep_restart, bring_to, exchange_run
 
 contains
 
@@ -31,18 +31,6 @@ contains
       call record%restart%begin()
       call exchange_run(simulation, record%restart)
    end subroutine keep_restart
-
-   !> Brings a run to where a table was kept.
-   !> Errors: as simulation_type's reduce.
-   subroutine go_on(model, simulation, table, error)
-      type(model_type), intent(in) :: model
-      type(simulation_type), intent(inout) :: simulation     !! a fresh run, started and assembled
-      type(state_table_type), intent(inout) :: table
-      type(error_type), allocatable, intent(out) :: error
-
-      call table%begin_restoring()
-      call bring_to(model, simulation, table, error)
-   end subroutine go_on
 
    !> Brings a run to where its arrays in a table were kept.
    !> Errors: as simulation_type's reduce.

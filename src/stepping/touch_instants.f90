@@ -69,26 +69,19 @@ contains
       ends_behind = passes .and. times(2) - times(1) <= short*self%first(1) .and. &
          abs(at_end) > nearer*self%first(2)
       if (ends_behind) return
-      if (self%tries > 1) call narrow(self, passes, times(2), at_end)
+      if (self%tries > 1) then
+   ! It takes the place of the end of its kind; the other one, if it stays a second time, counts
+         ! half.
+         i = merge(2, 1, passes)
+         self%times(i) = times(2)
+         self%distances(i) = at_end
+         if (self%last == i) self%distances(3 - i) = 0.5_dp*self%distances(3 - i)
+         self%last = i
+      end if
       associate (t => self%times, d => self%distances, goal => -0.3_dp*small*at_start)
          self%ending = t(1) + (t(2) - t(1))*min(max((d(1) - goal)/(d(1) - d(2)), 0.01_dp), 0.99_dp)
       end associate
    end function ends_behind
-
-   !> Puts an attempt in the place of the end of its kind; the other one, if it stays a second time,
-   !> counts half.
-   pure subroutine narrow(self, passes, time, found)
-      type(touch_search_type), intent(inout) :: self
-      logical, intent(in) :: passes
-      real(dp), intent(in) :: time, found
-      integer :: own
-
-      own = merge(2, 1, passes)
-      self%times(own) = time
-      self%distances(own) = found
-      if (self%last == own) self%distances(3 - own) = 0.5_dp*self%distances(3 - own)
-      self%last = own
-   end subroutine narrow
 
    !> Distance of an interface; that of a removed one is its gap.
    pure real(dp) function distance(bodies, state, i)
