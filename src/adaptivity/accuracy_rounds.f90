@@ -26,8 +26,7 @@ module accuracy_rounds
    use uncertainty_rule, only: uncertainty_parts
    implicit none
    private
-   public :: accuracy_rounds_type, accuracy_round_type, finding_type, is_of_friction, &
-      needs_full
+   public :: accuracy_rounds_type, accuracy_round_type, finding_type, is_of_friction, needs_full
 
    !> Least scale of a value: parts of the largest one so far, and of those of other interfaces.
    real(dp), parameter :: early = 0.25_dp, beside_others = 0.01_dp
@@ -186,9 +185,8 @@ contains
                finding = found(self%demands(d), points, &
                   record%uncertainties(self%demands(d)%quantity, self%demands(d)%interface), scale)
                finding%instead = '0 at the end of each step'
-               if (quantity%name == 'heat_rate' .and. .not. allocated(contact%heat_flux)) then
+               if (quantity%name == 'heat_rate' .and. .not. allocated(contact%heat_flux)) &
                   finding%instead = 'no heat'
-               end if
                if (quantity%resolution > 0.0_dp) finding%instead = end_words(quantity%name, contact)
                if (quantity%name == 'peak_pressure') then
                   finding%is_at_end = any(peak_is_at_end(points, contact))

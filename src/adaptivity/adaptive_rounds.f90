@@ -162,9 +162,8 @@ contains
       end associate
       ! Whether no other mesh and no other increments would help; whether a round that takes as long
       ! as this one ends too late.
-      call self%accuracy%conclude(model%accuracy%rounds, indicators%halvings == 0 .and. &
-         size(indicators%division%point_levels) == 0 .and. &
-         .not. any(indicators%division%levels > 0), &
+      call self%accuracy%conclude(model%accuracy%rounds, indicators%halvings == 0 .and. size( &
+         indicators%division%point_levels) == 0 .and. .not. any(indicators%division%levels > 0), &
          2.0_dp*wall_seconds() - self%start > self%deadline)
       if (.not. self%accuracy%goes_on) return
       if (.not. allocated(self%variation)) allocate (self%variation)

@@ -10,21 +10,18 @@
 !>     call vary(read, variation_type(levels=1, increments=0.5_dp), finer, error)
 module variations
    use mesh_bodies, only: find_bodies
-   use controls, only: default_solver, mumps_from, solver_by_size, solver_mumps, &
-      thermal_scheme_type
+   use controls, only: default_solver, mumps_from, solver_by_size, solver_mumps, thermal_scheme_type
    use errors, only: error_type, set_error, status_deck
    use kinds, only: dp, long
    use load_application, only: apply_requests, apply_transforms
    use local_refinement, only: choose_neighbours, elements_at_points, elements_in_region
    use memory_calls, only: check_memory
    use memory_needs, only: memory_needed
-   use model, only: model_type
+   use model, only: model_type, needs_full_tail, refined_region_type
    use order_reduction, only: reduce_order
-   use refined_regions, only: refined_region_type
    use refinement, only: numbering_fault, refine, refine_chosen
    use mesh_checks, only: point_jacobians
    use steps, only: solves_heat, solves_mechanics
-   use tail_choice, only: needs_full_tail
    use text, only: append, to_text
    implicit none
    private
@@ -102,9 +99,8 @@ contains
          associate (step => model%steps(s))
             if (variation%method /= as_written) step%fixed_point%method = variation%method
             if (variation%tolerance > 0.0_dp) step%fixed_point%tolerance = variation%tolerance
-            if (allocated(variation%scheme) .and. solves_heat(step%analysis)) then
-               step%scheme = variation%scheme
-            end if
+            if (allocated(variation%scheme) .and. solves_heat(step%analysis)) step%scheme = &
+               variation%scheme
             step%first_increment = varied_increment(step%first_increment, step%period, &
                variation%increments)
             step%smallest_increment = min(step%smallest_increment, step%first_increment)

@@ -16,7 +16,7 @@ module reduced_bodies
    use kinds, only: dp
    use loads, only: loads_type
    use materials, only: follows_temperature, heat_capacity, heat_capacity_at, melts, varies
-   use model, only: model_type
+   use model, only: has_sparse_tail, model_type
    use held_points, only: held_directions
    use point_materials, only: point_materials_type
    use point_rules, only: integration_rules
@@ -26,7 +26,6 @@ module reduced_bodies
    use steps, only: load_temperature, solves_heat, solves_mechanics
    use sum_lists, only: sum_list_type
    use stiffness_matrix, only: assemble_stiffness, assemble_thermal_load
-   use tail_choice, only: has_sparse_tail
    use thermal_matrix, only: assemble_capacity, assemble_conduction
    implicit none
    private

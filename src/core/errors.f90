@@ -6,7 +6,7 @@ module errors
    use kinds, only: dp
    implicit none
    private
-   public :: error_type, set_error, status_ok, status_deck, status_no_convergence, &
+   public :: error_type, place_type, set_error, status_ok, status_deck, status_no_convergence, &
       status_internal, status_verify, status_interrupted, check_finite
 
    integer, parameter :: status_ok = 0              !! solved
@@ -15,6 +15,12 @@ module errors
    integer, parameter :: status_internal = 3        !! internal or I/O error
    integer, parameter :: status_verify = 4          !! a *VERIFY check failed
    integer, parameter :: status_interrupted = 5     !! ended by SIGINT or SIGTERM
+
+   !> A place in a deck.
+   type :: place_type
+      integer :: image = 0    !! running number of the card image; 0 for the deck as a whole
+      integer :: column = 1   !! byte in the image
+   end type place_type
 
    !> An error and its exit status.
    type :: error_type

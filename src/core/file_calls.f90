@@ -41,8 +41,7 @@ module file_calls
    interface
       subroutine c_reason(number, text, length) bind(c, name='file_reason')
          import :: c_char, c_int
-         integer(c_int), value :: number
-         integer(c_int), value :: length
+         integer(c_int), value :: number, length
          character(kind=c_char), intent(out) :: text(length)
       end subroutine c_reason
 

@@ -37,8 +37,7 @@ module open_files
          integer(c_int), value :: descriptor
       end subroutine c_unlock
 
-      integer(c_int) function c_write(descriptor, position, text, count) &
-         bind(c, name='file_write')
+      integer(c_int) function c_write(descriptor, position, text, count) bind(c, name='file_write')
          import :: c_char, c_int, c_long
          integer(c_int), value :: descriptor
          integer(c_long), value :: position

@@ -189,9 +189,8 @@ contains
       type(report_type) :: report
       character(c_char) :: bytes(c_sizeof(report))
 
-      if (c_read(self%reports, bytes, size(bytes, kind=c_size_t), 0_c_long) == size(bytes)) then
-         report = transfer(bytes, report)
-      end if
+      if (c_read(self%reports, bytes, size(bytes, kind=c_size_t), 0_c_long) == size(bytes)) report &
+         = transfer(bytes, report)
       if (self%is_running .or. self%end%signal == 0 .and. report%is_whole == 1) return
       report%is_whole = 0_c_int
       report%status = int(status_internal, c_int)

@@ -22,8 +22,7 @@ contains
    pure function sort_order(numbers) result(order)
       integer, intent(in) :: numbers(:)            !! (n) numbers in any order
       integer :: order(size(numbers))              !! numbers(order) ascends
-      integer :: merged(size(numbers))
-      integer :: i, n, width, first, middle, last
+      integer :: merged(size(numbers)), i, n, width, first, middle, last
 
       n = size(numbers)
       order = [(i, i=1, n)]

@@ -5,11 +5,10 @@ module text
    use kinds, only: dp, long
    implicit none
    private
-   public :: string_type
-   public :: others, counted, to_text, all_digits, few_digits, rounded, digits_above, with_decimals
-   public :: or_blank, percent, quoted
-   public :: to_upper, without_blanks, is_same_name, read_integer, read_real, append
-   public :: is_whole, integer_fault, real_fault, smallest_magnitude, largest_magnitude, split_words
+   public :: string_type, others, counted, to_text, all_digits, few_digits, rounded, digits_above, &
+      with_decimals, or_blank, percent, quoted, to_upper, without_blanks, is_same_name, &
+      read_integer, read_real, append, is_whole, integer_fault, real_fault, smallest_magnitude, &
+      largest_magnitude, split_words
 
    integer, parameter :: largest_exponent = 300   !! beyond it reading could overflow
    !> Magnitudes of numbers that are not 0: products of three of them stay finite.
@@ -183,9 +182,8 @@ contains
 
       upper = string
       do i = 1, len(string)
-         if (string(i:i) >= 'a' .and. string(i:i) <= 'z') then
-            upper(i:i) = achar(iachar(string(i:i)) - 32)
-         end if
+         if (string(i:i) >= 'a' .and. string(i:i) <= 'z') upper(i:i) = achar(iachar(string(i:i)) - &
+            32)
       end do
    end function to_upper
 

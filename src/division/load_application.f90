@@ -281,8 +281,7 @@ contains
    !> The transform of each node, or 0.
    pure function transform_of(model) result(of_node)
       type(model_type), intent(in) :: model
-      integer :: of_node(size(model%mesh%node_number))
-      integer :: i
+      integer :: of_node(size(model%mesh%node_number)), i
 
       of_node = 0
       do i = 1, size(model%transforms)
@@ -374,9 +373,8 @@ contains
       end do
       follows = follows .and. of_node > 0
       do s = 1, size(model%steps)
-         model%steps(s)%boundaries = pack(model%steps(s)%boundaries, &
-            model%steps(s)%boundaries%dof == dof_temperature .or. &
-            .not. follows(model%steps(s)%boundaries%node))
+         model%steps(s)%boundaries = pack(model%steps(s)%boundaries, model%steps(s)%boundaries%dof &
+            == dof_temperature .or. .not. follows(model%steps(s)%boundaries%node))
       end do
    end subroutine drop_hanging
 

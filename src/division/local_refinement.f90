@@ -13,16 +13,14 @@ module local_refinement
    use errors, only: error_type
    use kinds, only: dp
    use mesh, only: mesh_type
-   use model, only: model_type
-   use refined_regions, only: refined_region_type
+   use model, only: model_type, refined_region_type
    use sum_lists, only: sum_list_type
    use surface_chains, only: align_chain, chain_faces, facing_chain, surface_chain_type
    implicit none
    private
    public :: choose_neighbours, elements_about, elements_at_points, elements_at_surfaces, &
-      elements_in_region, &
-      hanging_count, coarse_side, fine_sides, nodes_between, hanging_rows, place_hanging, &
-      distance_of_lines, largest_part
+      elements_in_region, hanging_count, coarse_side, fine_sides, nodes_between, hanging_rows, &
+      place_hanging, distance_of_lines, largest_part
 
    !> Part of DISTANCE= by which an element must come nearer: what only touches stays out.
    real(dp), parameter :: rounding = 1.0e-9_dp
@@ -99,8 +97,7 @@ contains
    pure function elements_about(mesh, nodes) result(is_near)
       type(mesh_type), intent(in) :: mesh
       integer, intent(in) :: nodes(:)                  !! indexes
-      logical :: is_near(size(mesh%element_kind))
-      logical :: is_one(size(mesh%node_number))
+      logical :: is_near(size(mesh%element_kind)), is_one(size(mesh%node_number))
       integer :: e
 
       is_one = .false.
@@ -429,8 +426,7 @@ contains
       real(dp) :: part
 
       associate (along => piece(:, 2) - piece(:, 1))
-         part = dot_product(point - piece(:, 1), along)/max(dot_product(along, along), &
-            tiny(1.0_dp))
+         part = dot_product(point - piece(:, 1), along)/max(dot_product(along, along), tiny(1.0_dp))
          to_point = norm2(point - piece(:, 1) - min(max(part, 0.0_dp), 1.0_dp)*along)
       end associate
    end function to_point

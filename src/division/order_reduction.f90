@@ -21,9 +21,8 @@ contains
    !> curved sides of the deck.
    pure subroutine reduce_order(model)
       type(model_type), intent(inout) :: model   !! with its loads, without partners of nodes
-      integer :: corners(2, size(model%mesh%node_number))
-      integer :: new_index(size(model%mesh%node_number))
-      integer :: i, n
+      integer :: corners(2, size(model%mesh%node_number)), new_index(size( &
+         model%mesh%node_number)), i, n
 
       corners = side_corners(model%mesh)
       n = 0

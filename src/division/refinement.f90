@@ -92,9 +92,8 @@ contains
       type(division_type), intent(in) :: division
       integer :: i
 
-      if (allocated(model%initial_temperature)) then
-         model%initial_temperature = division%weights%multiply(model%initial_temperature)
-      end if
+      if (allocated(model%initial_temperature)) model%initial_temperature = &
+         division%weights%multiply(model%initial_temperature)
       if (allocated(model%fields)) then
          do i = 1, size(model%fields)
             associate (field => model%fields(i))
@@ -139,8 +138,7 @@ contains
       coordinates(2, :) = division%weights%multiply(mesh%coordinates(2, :))
       call move_alloc(coordinates, mesh%coordinates)
       first = maxval(mesh%node_number) - division%nodes
-      mesh%node_number = [mesh%node_number, &
-         (first + i, i=division%nodes + 1, division%nodes_after)]
+      mesh%node_number = [mesh%node_number, (first + i, i=division%nodes + 1, division%nodes_after)]
       first = maxval(mesh%element_number) - division%elements
       mesh%element_number = [mesh%element_number, &
          (first + i, i=division%elements + 1, division%elements_after)]
@@ -230,8 +228,7 @@ contains
    pure function nodes_of_children(division, kind, nodes, e) result(children)
       type(division_type), intent(in) :: division
       integer, intent(in) :: kind, nodes(8), e
-      integer :: children(8, 4)
-      integer :: corners, f, i, own(21)
+      integer :: children(8, 4), corners, f, i, own(21)
 
       corners = element_corner_count(kind)
       own(:2*corners) = nodes(:2*corners)
@@ -246,8 +243,7 @@ contains
       children = 0
       associate (n => element_node_count(kind))
          if (corners == 4) children(:n, :) = reshape(own([quad_children(:n, :)]), [n, 4])
-         if (corners == 3) children(:n, :) = reshape(own([triangle_children(:n, :)]), &
-            [n, 4])
+         if (corners == 3) children(:n, :) = reshape(own([triangle_children(:n, :)]), [n, 4])
       end associate
    end function nodes_of_children
 

@@ -180,9 +180,7 @@ contains
       status = 0
       do deck = 2, size(command%decks)
          do other = 1, deck - 1
-            if (base_name(command%decks(deck)%value) /= base_name(command%decks(other)%value)) then
-               cycle
-            end if
+            if (base_name(command%decks(deck)%value) /= base_name(command%decks(other)%value)) cycle
             call print_error('thercon', command%decks(other)%value//' and '// &
                command%decks(deck)%value//' would have the same results')
             status = status_deck
@@ -296,9 +294,8 @@ contains
             if (outcome%report%status /= 0) self%failed = self%failed + 1
             call self%progress%clear()
             if (len(printed) > 0) call pass_on(printed)
-            if (.not. self%command%quiet .and. outcome%report%status /= status_deck) then
-               call outcome%print(results_of(task%path, task%command))
-            end if
+            if (.not. self%command%quiet .and. outcome%report%status /= status_deck) call &
+               outcome%print(results_of(task%path, task%command))
          end associate
          self%running(s)%deck = 0
       end do

@@ -1,7 +1,7 @@
 !> The stiffness of springs and trusses, and the forces that temperatures exert on them, as those of
 !> the bodies in `stiffness_matrix`.
 module bar_matrices
-   use bars, only: bar_type
+   use model, only: bar_type
    use kinds, only: dp
    use sparse_matrix, only: sparse_matrix_type, triplet_list_type
    implicit none

@@ -95,8 +95,7 @@ contains
 
       call invert_lists(mesh%element_nodes, element_node_count(mesh%element_kind), &
          size(mesh%node_number), first_element, element)
-      allocate (start(size(last_of) + 1), &
-         neighbour(sum(element_node_count(mesh%element_kind)**2)))
+      allocate (start(size(last_of) + 1), neighbour(sum(element_node_count(mesh%element_kind)**2)))
       last_of = 0
       start(1) = 1
       do i = 1, size(last_of)

@@ -84,10 +84,9 @@ contains
       real(dp), intent(in) :: beta(:, :)
       real(dp), intent(in) :: thickness           !! thickness; not of axisymmetric ones [length]
       !> (degrees of freedom, nodes) [stress length^2/temperature]
-      real(dp) :: load(freedoms(kind, coordinates), element_node_count(kind))
-      real(dp) :: b(4, point_count(kind), size(load, 1)), volumes(point_count(kind))
-      real(dp) :: points(2, point_count(kind)), weights(point_count(kind))
-      real(dp) :: psi(element_node_count(kind)), force(size(load, 1))
+      real(dp) :: load(freedoms(kind, coordinates), element_node_count(kind)), b(4, point_count( &
+         kind), size(load, 1)), volumes(point_count(kind)), points(2, point_count(kind)), weights( &
+         point_count(kind)), psi(element_node_count(kind)), force(size(load, 1))
       integer :: g, i, q
 
       call integration_rule(kind, points, weights)
@@ -129,8 +128,7 @@ contains
       real(dp), intent(in) :: coordinates(:, :), thickness
       real(dp), intent(out) :: b(:, :, :), volumes(:)
       real(dp), intent(in), optional :: e(:, :, :)
-      real(dp) :: points(2, point_count(kind)), weights(point_count(kind))
-      real(dp) :: areas(point_count(kind))
+      real(dp) :: points(2, point_count(kind)), weights(point_count(kind)), areas(point_count(kind))
       real(dp), dimension(size(b, 3)) :: change, mean
       integer :: g, i
 
@@ -139,8 +137,16 @@ contains
          call strain_matrix(kind, plane, coordinates, thickness, points(:, g), &
             b(:, g, :2*element_node_count(kind)), volumes(g))
       end do
-      if (plane == generalized_strain) call set_along_z(kind, coordinates, thickness, points, &
-         b(:, :, 2*element_node_count(kind) + 1:))
+      if (plane == generalized_strain) then
+         ! Those of a reference node.
+         associate (n => element_node_count(kind))
+            b(:, :, 2*n + 1:) = 0.0_dp
+            do g = 1, size(weights)
+               b(3, g, 2*n + 1:) = strain_along_z(matmul(coordinates(:, :n), element_shape(kind, &
+                  points(:, g))) - coordinates(:, n + 1), thickness)
+            end do
+         end associate
+      end if
       volumes = volumes*weights
       if (present(e) .and. kind == quad4_enhanced) call enhance_strains(coordinates, points, &
          plane == axisymmetric, e, volumes, b)
@@ -166,22 +172,6 @@ contains
          end do
       end do
    end subroutine strain_matrices
-
-   !> B of the degrees of freedom of a reference node.
-   pure subroutine set_along_z(kind, coordinates, thickness, points, b)
-      integer, intent(in) :: kind
-      real(dp), intent(in) :: coordinates(:, :), thickness, points(:, :)
-      real(dp), intent(out) :: b(:, :, :)
-      integer :: g
-
-      b = 0.0_dp
-      associate (n => element_node_count(kind))
-         do g = 1, size(points, 2)
-            b(3, g, :) = strain_along_z(matmul(coordinates(:, :n), element_shape(kind, &
-               points(:, g))) - coordinates(:, n + 1), thickness)
-         end do
-      end associate
-   end subroutine set_along_z
 
    !> B at a point, and the volume per d xi d eta.
    pure subroutine strain_matrix(kind, plane, coordinates, thickness, point, b, volume)

@@ -103,9 +103,8 @@ contains
       real(dp), intent(in) :: thickness                 !! thickness [length]
       logical, intent(in) :: axisymmetric               !! whether x is a radius
       real(dp) :: moments(3, element_node_count(kind))  !! (3, nodes) [length^3, length^4]
-      real(dp) :: points(2, load_point_count(kind)), weights(load_point_count(kind))
-      real(dp) :: gradients(2, element_node_count(kind)), psi(element_node_count(kind))
-      real(dp) :: position(2), jacobian, factor
+      real(dp) :: points(2, load_point_count(kind)), weights(load_point_count(kind)), gradients(2, &
+         element_node_count(kind)), psi(element_node_count(kind)), position(2), jacobian, factor
       integer :: g, q
 
       call load_rule(kind, points, weights)

@@ -350,8 +350,7 @@ contains
    !> patches of slender elements in any direction are fitted like those of square ones.
    pure function scaling_of(corners, centre) result(scaling)
       real(dp), intent(in) :: corners(:, :), centre(2)
-      real(dp) :: scaling(2, 2)
-      real(dp) :: xx, yy, xy, angle, axis(2), unit
+      real(dp) :: scaling(2, 2), xx, yy, xy, angle, axis(2), unit
       integer :: i
 
       unit = maxval(abs(corners - spread(centre, 2, size(corners, 2))))

@@ -59,8 +59,7 @@ contains
    pure function make_points(mesh) result(points)
       type(mesh_type), intent(in) :: mesh
       type(point_map_type) :: points        !! the points
-      integer :: owner(size(mesh%node_number))
-      integer :: element, i, k, n, node
+      integer :: owner(size(mesh%node_number)), element, i, k, n, node
       integer, allocatable :: extra_node(:), extra_section(:)
 
       n = size(mesh%node_number)
@@ -148,9 +147,8 @@ contains
    !> triangles the fit is that through all points, or their mean.
    pure function fit_of_points(kind) result(fit)
       integer, intent(in) :: kind                    !! kind of the element
-      real(dp) :: fit(recovery_count(kind), point_count(kind))
-      real(dp) :: points(2, point_count(kind)), weights(point_count(kind))
-      real(dp) :: there(4, point_count(kind)), here(4, recovery_count(kind))
+      real(dp) :: fit(recovery_count(kind), point_count(kind)), points(2, point_count(kind)), &
+         weights(point_count(kind)), there(4, point_count(kind)), here(4, recovery_count(kind))
       integer :: i, j
 
       call integration_rule(kind, points, weights)
@@ -304,8 +302,7 @@ contains
    pure function squared_errors(mesh, estimate) result(error)
       type(mesh_type), intent(in) :: mesh
       type(error_record_type), intent(in) :: estimate    !! of the fields of an increment, or none
-      real(dp) :: error(size(mesh%element_kind))
-      real(dp) :: area, sums(mesh%body_count)
+      real(dp) :: error(size(mesh%element_kind)), area, sums(mesh%body_count)
       integer :: e
 
       error = 0.0_dp

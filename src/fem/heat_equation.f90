@@ -232,8 +232,7 @@ contains
    !> Part of the films in it.
    pure function film_history(self) result(rhs)
       class(heat_equation_type), intent(in) :: self
-      real(dp) :: rhs(size(self%temperature_old))
-      real(dp) :: part(2)
+      real(dp) :: rhs(size(self%temperature_old)), part(2)
 
       part = film_parts(self%scheme, self%scheme%b)
       rhs = -part(1)*film_heat(self%old%film, self%temperature_old) - &

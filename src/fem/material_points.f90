@@ -68,9 +68,8 @@ contains
       do e = 1, n
          associate (nodes => mesh%element_nodes(:element_node_count(mesh%element_kind(e)), e))
             call map_points(self%rules(mesh%element_kind(e)), mesh%coordinates(:, nodes), &
-               sections(mesh%element_section(e))%thickness, &
-               mesh%element_plane(e) == axisymmetric, self%inverse(:, self%first(e):), &
-               self%volume(self%first(e):))
+               sections(mesh%element_section(e))%thickness, mesh%element_plane(e) == axisymmetric, &
+               self%inverse(:, self%first(e):), self%volume(self%first(e):))
          end associate
       end do
    end subroutine prepare
@@ -268,10 +267,8 @@ contains
       class(material_points_type), intent(in) :: self
       type(mesh_type), intent(in) :: mesh
       integer, intent(in) :: element
-      real(dp), intent(in) :: displacement(:, :)
-      real(dp), intent(in) :: temperature(:)
-      real(dp), intent(inout) :: strain(most, 4)
-      real(dp), intent(inout) :: values(most, 4)
+      real(dp), intent(in) :: displacement(:, :), temperature(:)
+      real(dp), intent(inout) :: strain(most, 4), values(most, 4)
       real(dp) :: areas(most), warmth(most), u(3, nodes_per_element)
       integer :: g, i, n, q
 
@@ -389,9 +386,8 @@ contains
 
       do i = 1, 4
          values(g:g + 1, i) = material%elasticity(1, i)*strain(g:g + 1, 1) + &
-            material%elasticity(2, i)*strain(g:g + 1, 2) + &
-            material%elasticity(3, i)*strain(g:g + 1, 3) + &
-            material%elasticity(4, i)*strain(g:g + 1, 4) - &
+            material%elasticity(2, i)*strain(g:g + 1, 2) + material%elasticity(3, i)*strain(g:g + &
+            1, 3) + material%elasticity(4, i)*strain(g:g + 1, 4) - &
             material%thermal_modulus(i)*warmth(g:g + 1)
       end do
    end subroutine stress_from_strain
@@ -496,8 +492,7 @@ contains
                nodes(:rule%nodes)))
          end do
          do q = 1, rule%nodes
-            forces(1, q) = forces(1, q) + dot_product(rule%shape(:rule%count, q), &
-               hoop(:rule%count))
+            forces(1, q) = forces(1, q) + dot_product(rule%shape(:rule%count, q), hoop(:rule%count))
          end do
       end associate
    end function nodal_forces

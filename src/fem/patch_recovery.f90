@@ -103,8 +103,7 @@ contains
    !> opposite sides, so that the centres do not show it.
    pure function is_row(layout)
       type(layout_type), intent(in) :: layout
-      logical :: is_row(size(layout%mesh%element_kind))
-      logical :: is_free(4)
+      logical :: is_row(size(layout%mesh%element_kind)), is_free(4)
       integer :: e, k, q
 
       do e = 1, size(is_row)
@@ -210,8 +209,7 @@ contains
    pure subroutine add_curvature(row, layout, patch, point, share)
       type(row_type), intent(inout) :: row
       type(layout_type), intent(in) :: layout
-      integer, intent(in) :: patch(:)
-      integer, intent(in) :: point
+      integer, intent(in) :: patch(:), point
       real(dp), intent(in) :: share
       type(fit_type) :: fit
       real(dp) :: nodes(2, 8)
@@ -234,8 +232,7 @@ contains
             end do
          end associate
       end do
-      if (meeting > 0) call add_weights(row, layout, patch, &
-         share*(missing - extrapolated/meeting))
+      if (meeting > 0) call add_weights(row, layout, patch, share*(missing - extrapolated/meeting))
    end subroutine add_curvature
 
 end module patch_recovery

@@ -52,9 +52,8 @@ contains
 
       associate (mine => nodes(:rule%nodes))
          do g = 1, size(strain)
-            strain(g) = strain(g) + &
-               dot_product(rule%shape(g, :rule%nodes), displacement(1, mine))/ &
-               dot_product(rule%shape(g, :rule%nodes), coordinates(1, mine))
+            strain(g) = strain(g) + dot_product(rule%shape(g, :rule%nodes), displacement(1, &
+               mine))/dot_product(rule%shape(g, :rule%nodes), coordinates(1, mine))
          end do
       end associate
    end subroutine add_hoop_strain

@@ -58,8 +58,7 @@ contains
       type(mesh_type), intent(in) :: mesh
       type(section_type), intent(in) :: sections(:)
       type(material_type), intent(in) :: materials(:)
-      integer :: before(size(mesh%element_kind) + 1)
-      integer :: e
+      integer :: before(size(mesh%element_kind) + 1), e
 
       before = 0
       do e = 1, size(mesh%element_kind)
@@ -156,8 +155,7 @@ contains
       class(point_histories_type), intent(in) :: self
       type(mesh_type), intent(in) :: mesh
       real(dp), intent(in) :: first(:), second(:)            !! (numbers) changes in them
-      real(dp) :: largest(2)
-      real(dp) :: strains(most, 10, 2), creep(4), whole(4)
+      real(dp) :: largest(2), strains(most, 10, 2), creep(4), whole(4)
       integer :: e, g
 
       largest = 0.0_dp

@@ -227,8 +227,7 @@ contains
    !> Inverse of a symmetric positive definite matrix; zero where it is not.
    pure function inverse_of(matrix) result(inverse)
       real(dp), intent(in) :: matrix(:, :)
-      real(dp) :: inverse(size(matrix, 1), size(matrix, 1))
-      real(dp) :: pivot, column(size(matrix, 1))
+      real(dp) :: inverse(size(matrix, 1), size(matrix, 1)), pivot, column(size(matrix, 1))
       integer :: i, k
 
       ! Gauss-Jordan in place.

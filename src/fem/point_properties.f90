@@ -80,8 +80,7 @@ contains
    pure function in_global_axes(material, axes) result(e)
       class(properties_type), intent(in) :: material
       real(dp), intent(in) :: axes(2, 2)
-      real(dp) :: e(4, 4)
-      real(dp) :: rotation(4, 4)
+      real(dp) :: e(4, 4), rotation(4, 4)
 
       e = material%elasticity
       if (are_x_and_y(axes)) return

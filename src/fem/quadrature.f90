@@ -120,8 +120,7 @@ contains
 
    !> The 3 x 3 rule, exact for products of polynomials of degree 5.
    pure subroutine square_3(points, weights)
-      real(dp), intent(out) :: points(2, 9)
-      real(dp), intent(out) :: weights(9)
+      real(dp), intent(out) :: points(2, 9), weights(9)
       integer :: i, j
 
       do j = 1, 3

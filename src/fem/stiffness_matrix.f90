@@ -72,8 +72,7 @@ contains
    !> Degrees of freedom of nodes.
    pure function displacements_of(nodes) result(dofs)
       integer, intent(in) :: nodes(:)
-      integer :: dofs(2*size(nodes))
-      integer :: i
+      integer :: dofs(2*size(nodes)), i
 
       dofs = [(2*nodes(i) - 1, 2*nodes(i), i=1, size(nodes))]
    end function displacements_of

@@ -3,13 +3,11 @@ module controls
    use kinds, only: dp
    implicit none
    private
-   public :: continuation_type, fixed_point_type, start_type, thermal_scheme_type
-   public :: start_previous, start_open, start_closed, start_both, start_given
-   public :: implicit_scheme, galerkin_scheme, crank_nicolson_scheme, explicit_scheme
-   public :: l_stable_scheme, stage_part
-   public :: method_picard, method_zaitsev, method_anderson, method_newton, method_names
-   public :: solver_by_size, solver_skyline, solver_mumps, mumps_from, default_solver
-   public :: tail_by_size, tail_full, tail_sparse
+   public :: continuation_type, fixed_point_type, start_type, thermal_scheme_type, start_previous, &
+      start_open, start_closed, start_both, start_given, implicit_scheme, galerkin_scheme, &
+      crank_nicolson_scheme, explicit_scheme, l_stable_scheme, stage_part, method_picard, &
+      method_zaitsev, method_anderson, method_newton, method_names, solver_by_size, &
+      solver_skyline, solver_mumps, mumps_from, default_solver, tail_by_size, tail_full, tail_sparse
 
    integer, parameter :: method_picard = 1    !! eq. (4.1)
    integer, parameter :: method_zaitsev = 2   !! eq. (4.2)
@@ -68,14 +66,12 @@ module controls
    end type thermal_scheme_type
 
    !> The implicit scheme of the paper: a1 = a3 = c2 = 1.
-   type(thermal_scheme_type), parameter :: implicit_scheme = &
-      thermal_scheme_type([1.0_dp, 0.0_dp, 1.0_dp], [0.0_dp, 0.0_dp, 0.0_dp], [0.0_dp, 1.0_dp], &
-      'IMPLICIT')
+   type(thermal_scheme_type), parameter :: implicit_scheme = thermal_scheme_type([1.0_dp, 0.0_dp, &
+      1.0_dp], [0.0_dp, 0.0_dp, 0.0_dp], [0.0_dp, 1.0_dp], 'IMPLICIT')
 
    !> Galerkin's scheme of the paper: weight tau on [0, 1], T and G linear in tau.
-   type(thermal_scheme_type), parameter :: galerkin_scheme = &
-      thermal_scheme_type([4.0_dp, 1.0_dp, 3.0_dp]/6.0_dp, [2.0_dp, 1.0_dp, 1.0_dp]/6.0_dp, &
-      [1.0_dp, 2.0_dp]/3.0_dp, 'GALERKIN')
+   type(thermal_scheme_type), parameter :: galerkin_scheme = thermal_scheme_type([4.0_dp, 1.0_dp, &
+      3.0_dp]/6.0_dp, [2.0_dp, 1.0_dp, 1.0_dp]/6.0_dp, [1.0_dp, 2.0_dp]/3.0_dp, 'GALERKIN')
 
    !> Crank and Nicolson's scheme: the mean of both ends, with the mean of both G.
    type(thermal_scheme_type), parameter :: crank_nicolson_scheme = &
@@ -83,16 +79,14 @@ module controls
       [1.0_dp, 1.0_dp]/2.0_dp, 'CRANK-NICOLSON')
 
    !> Explicit in omega: G of the start of the increment.
-   type(thermal_scheme_type), parameter :: explicit_scheme = &
-      thermal_scheme_type([1.0_dp, 1.0_dp, 0.0_dp], [0.0_dp, 0.0_dp, 0.0_dp], [0.0_dp, 1.0_dp], &
-      'EXPLICIT')
+   type(thermal_scheme_type), parameter :: explicit_scheme = thermal_scheme_type([1.0_dp, 1.0_dp, &
+      0.0_dp], [0.0_dp, 0.0_dp, 0.0_dp], [0.0_dp, 1.0_dp], 'EXPLICIT')
 
    !> The singly diagonally implicit scheme of two stages, L-stable and of second order (R.
    !> Alexander, SIAM J. Numer. Anal. 14 (1977) 1006): both stages are implicit ones of a part of
    !> the increment.
-   type(thermal_scheme_type), parameter :: l_stable_scheme = &
-      thermal_scheme_type([1.0_dp, 0.0_dp, 1.0_dp], [0.0_dp, 0.0_dp, 0.0_dp], [0.0_dp, 1.0_dp], &
-      'L-STABLE', 2)
+   type(thermal_scheme_type), parameter :: l_stable_scheme = thermal_scheme_type([1.0_dp, 0.0_dp, &
+      1.0_dp], [0.0_dp, 0.0_dp, 0.0_dp], [0.0_dp, 1.0_dp], 'L-STABLE', 2)
    real(dp), parameter :: stage_part = 1.0_dp - sqrt(0.5_dp)   !! gamma, this part
 
 contains

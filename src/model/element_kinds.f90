@@ -2,10 +2,9 @@
 module element_kinds
    implicit none
    private
-   public :: quad8, quad8_reduced, quad4, triangle6, triangle3, quad4_enhanced, kind_count
-   public :: element_node_count, element_corner_count, side_node_count, side_nodes
-   public :: linear_kind
-   public :: plane_strain, plane_stress, axisymmetric, generalized_strain
+   public :: quad8, quad8_reduced, quad4, triangle6, triangle3, quad4_enhanced, kind_count, &
+      element_node_count, element_corner_count, side_node_count, side_nodes, linear_kind, &
+      plane_strain, plane_stress, axisymmetric, generalized_strain
 
    integer, parameter :: quad8 = 1           !! eight nodes, 3 x 3 points
    integer, parameter :: quad8_reduced = 2   !! eight nodes, 2 x 2 points

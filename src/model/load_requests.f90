@@ -1,7 +1,7 @@
 !> Loads, supports and initial temperatures as a deck asks for them: a node, an element or a set of
 !> the deck's mesh, a component and a value. They hold for any division of that mesh.
 module load_requests
-   use card_places, only: place_type
+   use errors, only: place_type
    use kinds, only: dp
    use mesh, only: set_type
    implicit none

@@ -9,14 +9,13 @@ module materials
    use table_rows, only: find_row, row_below
    implicit none
    private
-   public :: material_type, properties_type, section_type, property_type, orientation_type
-   public :: material_axes, strain_rotation, heat_capacity, least_heat_capacity
-   public :: set_property, elasticity_of, isotropic, engineering, orthotropic, anisotropic
-   public :: follows_temperature, has_law, reference_nodes, strain_freedoms, varies
-   public :: thermal_strain, heat_content, heat_capacity_at, expansion_heat
-   public :: set_latent_heat, melts, melting_row, latent_content, solid_fraction, melted_to
-   public :: property_keywords, of_elasticity, of_expansion, of_conductivity, of_density, &
-      of_specific_heat
+   public :: material_type, properties_type, section_type, property_type, orientation_type, &
+      material_axes, strain_rotation, heat_capacity, least_heat_capacity, set_property, &
+      elasticity_of, isotropic, engineering, orthotropic, anisotropic, follows_temperature, &
+      has_law, reference_nodes, strain_freedoms, varies, thermal_strain, heat_content, &
+      heat_capacity_at, expansion_heat, set_latent_heat, melts, melting_row, latent_content, &
+      solid_fraction, melted_to, property_keywords, of_elasticity, of_expansion, of_conductivity, &
+      of_density, of_specific_heat
 
    ! What a property is.
    integer, parameter :: of_elasticity = 1, of_expansion = 2, of_conductivity = 3, of_density = 4, &
@@ -395,9 +394,8 @@ contains
             slope = along_axes(values(:n))
             strain = slope*(temperature - zero) - first*(initial - zero)
             row = row_below(rows, temperature)
-            if (row > 0 .and. row < size(rows)) slope = slope + (temperature - zero)/ &
-               (rows(row + 1) - rows(row))*along_axes(property%values(:, row + 1) - &
-               property%values(:, row))
+            if (row > 0 .and. row < size(rows)) slope = slope + (temperature - zero)/(rows(row + &
+               1) - rows(row))*along_axes(property%values(:, row + 1) - property%values(:, row))
          end associate
       end do
    end subroutine thermal_strain

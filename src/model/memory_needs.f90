@@ -10,10 +10,9 @@ module memory_needs
    use element_kinds, only: element_node_count, linear_kind
    use kinds, only: dp
    use materials, only: heat_capacity
-   use model, only: model_type, uncertainty_full, uncertainty_last
+   use model, only: has_sparse_tail, model_type, uncertainty_full, uncertainty_last
    use ordering, only: adjacency, first_rows, profile_order
    use sparse_matrix, only: sparse_matrix_type, triplet_list_type
-   use tail_choice, only: has_sparse_tail
    use steps, only: planned_increments, solves_heat, solves_mechanics
    implicit none
    private

@@ -7,8 +7,7 @@ module mesh
    use named_items, only: named_type
    implicit none
    private
-   public :: mesh_type, set_type, surface_type, extent_of, add_node
-   public :: nodes_per_element
+   public :: mesh_type, set_type, surface_type, extent_of, add_node, nodes_per_element
 
    integer, parameter :: nodes_per_element = 8 !! four corners, then four midside nodes
 

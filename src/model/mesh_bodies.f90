@@ -15,8 +15,7 @@ contains
    !> their first element.
    pure subroutine find_bodies(mesh)
       type(mesh_type), intent(inout) :: mesh   !! the mesh; nodes without elements get body 0
-      integer :: parent(size(mesh%node_number)), body(size(mesh%node_number))
-      integer :: e, q, root
+      integer :: parent(size(mesh%node_number)), body(size(mesh%node_number)), e, q, root
 
       parent = [(q, q=1, size(parent))]
       do e = 1, size(mesh%element_nodes, 2)

@@ -3,27 +3,27 @@
 module model
    use accuracy_targets, only: accuracy_request_type
    use amplitudes, only: amplitude_type
-   use bars, only: bar_type
-   use card_places, only: place_type
+   use errors, only: place_type
    use contact_definitions, only: contact_definition_type, interaction_type, tie_definition_type
-   use controls, only: solver_skyline, tail_by_size
+   use controls, only: solver_skyline, tail_by_size, tail_sparse
    use equations, only: coupling_type, equation_type
    use kinds, only: dp
    use load_requests, only: nodal_field_type, requests_type
    use materials, only: follows_temperature, material_type, orientation_type, section_type
    use mesh, only: mesh_type
-   use refined_regions, only: refined_region_type
    use steps, only: step_type
    use text, only: string_type, to_text, to_upper
    use transforms, only: partner_type, transform_type
    implicit none
    private
-   public :: model_type, physical_constants_type, verify_type, unit_labels_type
-   public :: follows_temperatures, uncertainty_named
+   public :: model_type, bar_type, refined_region_type, verify_type, unit_labels_type, &
+      follows_temperatures, has_sparse_tail, needs_full_tail, uncertainty_named
 
    ! ERRORS= of *OPTIONS: no uncertainties; those of the last increment of each step; of all.
    integer, parameter, public :: uncertainty_no = 0, uncertainty_last = 1, uncertainty_full = 2
    character(*), parameter, public :: uncertainty_words = 'NO/LAST/FULL/YES'
+
+   integer, parameter :: most_at_once = 200   !! contact points that a full matrix is for
 
    !> Labels of the deck's units (*OPTIONS, UNITS=); empty when not given, the last three also
    !> beside the others.
@@ -65,6 +65,24 @@ module model
    contains
       procedure :: title => title_of_check
    end type verify_type
+
+   !> A spring or a truss, which resists its elongation, a sum of displacements of its nodes; its force is stiffness*elongation less warm_force*temperature.
+   type :: bar_type
+      type(equation_type) :: elongation         !! its terms sum up to the elongation [length]
+      type(equation_type) :: mean               !! those of the mean temperature
+      real(dp) :: stiffness = 0.0_dp            !! of a truss E A/L [force/length]
+      real(dp) :: warm_force = 0.0_dp           !! of a truss E A alpha [force/temperature]
+      logical :: follows_axes = .false.         !! whether *TRANSFORM turns its displacements
+   end type bar_type
+
+   !> Where a model is refined locally, and how often.
+   type :: refined_region_type
+      integer :: levels = 0              !! number of divisions
+      integer, allocatable :: surfaces(:) !! indexes into the mesh's surfaces; unallocated for a set
+      integer :: set = 0                 !! index into its element sets
+      real(dp) :: distance = 0.0_dp      !! DISTANCE=; 0 where it is not given [length]
+      integer :: card = 0                !! card image of the *REFINE
+   end type refined_region_type
 
    !> All that the deck says.
    type :: model_type
@@ -129,16 +147,8 @@ contains
    pure integer function uncertainty_named(word) result(uncertainty)
       character(*), intent(in) :: word
 
-      select case (to_upper(word))
-      case ('NO')
-         uncertainty = uncertainty_no
-      case ('LAST', 'YES')
-         uncertainty = uncertainty_last
-      case ('FULL')
-         uncertainty = uncertainty_full
-      case default
-         uncertainty = -1
-      end select
+      uncertainty = findloc(['NO  ', 'LAST', 'FULL', 'YES '], to_upper(word), dim=1) - 1
+      if (uncertainty > uncertainty_full) uncertainty = uncertainty_last
    end function uncertainty_named
 
    !> Whether properties of any body follow its temperatures.
@@ -149,5 +159,24 @@ contains
       follows_temperatures = any(follows_temperature(model%materials(pack( &
          model%sections%material, model%sections%material > 0))))
    end function follows_temperatures
+
+   !> Whether the contact unknowns are held sparsely, beside the faces of bodies that are reduced in
+   !> pieces; else all of them in one full matrix, to which bodies are reduced as a whole. The full
+   !> matrix costs less where it is small.
+   pure logical function has_sparse_tail(model, points)
+      type(model_type), intent(in) :: model
+      real(dp), intent(in) :: points     !! number of contact points
+
+      has_sparse_tail = model%tail == tail_sparse .or. (model%tail == tail_by_size .and. &
+         model%mesh%body_count > 2 .and. points > most_at_once)
+      has_sparse_tail = has_sparse_tail .and. points > 0.0_dp .and. .not. needs_full_tail(model)
+   end function has_sparse_tail
+
+   !> Whether a deck needs derivatives between all contact points, and with them the full matrix.
+   pure logical function needs_full_tail(model)
+      type(model_type), intent(in) :: model
+
+      needs_full_tail = any(model%steps%continuation%is_on)
+   end function needs_full_tail
 
 end module model

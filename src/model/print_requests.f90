@@ -1,13 +1,13 @@
 !> Tables of nodes and of integration points that the deck asks for (*NODE PRINT, *EL PRINT).
 module print_requests
+   use kinds, only: dp
    use mesh, only: set_type
-   use time_points, only: time_points_type
+   use named_items, only: named_type
    implicit none
    private
-   public :: print_request_type
-   public :: print_displacement, print_temperature, print_force, print_heat
-   public :: print_stress, print_heat_flux, print_position
-   public :: print_peeq, print_plastic, print_ceeq, print_creep, print_solid
+   public :: print_request_type, time_points_type, print_displacement, print_temperature, &
+      print_force, print_heat, print_stress, print_heat_flux, print_position, print_peeq, &
+      print_plastic, print_ceeq, print_creep, print_solid
 
    ! Quantities of a table, by their key in the deck.
    integer, parameter :: print_displacement = 1   !! U: displacements of nodes
@@ -22,6 +22,14 @@ module print_requests
    integer, parameter :: print_creep = 10         !! CE: creep strains
    integer, parameter :: print_solid = 11         !! SOLID: solid fractions of nodes
    integer, parameter :: print_position = 12      !! COORD: is in every table
+
+   !> One *TIME POINTS, instants of output; without times where a card names none.
+   type, extends(named_type) :: time_points_type
+      logical :: total_time = .false.       !! whether times are total ones, not those of the step
+      real(dp), allocatable :: times(:)     !! (points) ascending [time]
+   contains
+      procedure :: in_step
+   end type time_points_type
 
    !> One card: a table of the nodes, or of the integration points of the elements, of a set.
    type :: print_request_type
@@ -65,5 +73,15 @@ contains
       name = 'ALL'
       if (self%set > 0) name = sets(self%set)%name
    end function name_of_set
+
+   !> The instants from the start of a step.
+   pure function in_step(self, step_start) result(times)
+      class(time_points_type), intent(in) :: self
+      real(dp), intent(in) :: step_start     !! total time at the start of the step [time]
+      real(dp), allocatable :: times(:)      !! [time]
+
+      allocate (times(0))
+      if (allocated(self%times)) times = self%times - merge(step_start, 0.0_dp, self%total_time)
+   end function in_step
 
 end module print_requests

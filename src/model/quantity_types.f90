@@ -5,13 +5,12 @@ module quantity_types
    use text, only: to_upper
    implicit none
    private
-   public :: quantity_type, find_quantity
-   public :: of_history, of_bodies, of_passes, of_interface, of_contact_points, of_nodes, &
-      of_points, of_elements, of_sections, of_references, of_motions
-   public :: needs_nothing, needs_temperature, needs_heat, needs_mechanics, needs_coupling
-   public :: needs_storage, needs_dilatation, needs_friction_heat, needs_wear, needs_stability
-   public :: needs_branch, needs_sections, needs_plasticity, needs_creep, needs_laws, &
-      needs_references, needs_melting, last_need
+   public :: quantity_type, find_quantity, of_history, of_bodies, of_passes, of_interface, &
+      of_contact_points, of_nodes, of_points, of_elements, of_sections, of_references, of_motions, &
+      needs_nothing, needs_temperature, needs_heat, needs_mechanics, needs_coupling, &
+      needs_storage, needs_dilatation, needs_friction_heat, needs_wear, needs_stability, &
+      needs_branch, needs_sections, needs_plasticity, needs_creep, needs_laws, needs_references, &
+      needs_melting, last_need
 
    integer, parameter :: name_length = 25
 

@@ -6,8 +6,7 @@ module shape_functions
    use kinds, only: dp
    implicit none
    private
-   public :: element_shape, element_gradients, side_shape, side_slope
-   public :: node_position
+   public :: element_shape, element_gradients, side_shape, side_slope, node_position
 
    !> xi, eta of the eight nodes: corners anticlockwise, then the midsides of 1-2, 2-3, 3-4, 4-1.
    real(dp), parameter :: square_position(2, 8) = reshape( &
@@ -75,8 +74,7 @@ contains
    pure function local_gradients(kind, point) result(slope)
       integer, intent(in) :: kind                          !! kind of the element
       real(dp), intent(in) :: point(2)                     !! xi, eta
-      real(dp) :: slope(2, element_node_count(kind))
-      real(dp) :: a, area(3), b, eta, xi
+      real(dp) :: slope(2, element_node_count(kind)), a, area(3), b, eta, xi
       integer :: q, next
 
       select case (kind)

@@ -4,19 +4,16 @@ module steps
    use controls, only: continuation_type, fixed_point_type, implicit_scheme, start_type, &
       thermal_scheme_type
    use kinds, only: dp
-   use print_requests, only: print_request_type
-   use time_points, only: time_points_type
+   use print_requests, only: print_request_type, time_points_type
    implicit none
    private
-   public :: step_type, step_controls_type, boundary_type
-   public :: load_type, load_kind_count
-   public :: load_force, load_pressure, load_traction, load_body_force, load_gravity
-   public :: load_centrifugal, centrifugal_round, load_nodal_heat, load_face_heat, load_body_heat
-   public :: load_film_coefficient, load_film_sink, load_temperature, acts_on_nodes, loaded_side
-   public :: analysis_static, analysis_coupled, analysis_heat, dof_temperature
-   public :: solves_heat, solves_mechanics, adapts_increments
-   public :: cycle_type, until_strain, until_displacement, until_force
-   public :: least_increment, increment_growth, planned_increments
+   public :: step_type, step_controls_type, boundary_type, load_type, load_kind_count, load_force, &
+      load_pressure, load_traction, load_body_force, load_gravity, load_centrifugal, &
+      centrifugal_round, load_nodal_heat, load_face_heat, load_body_heat, load_film_coefficient, &
+      load_film_sink, load_temperature, acts_on_nodes, loaded_side, analysis_static, &
+      analysis_coupled, analysis_heat, dof_temperature, solves_heat, solves_mechanics, &
+      adapts_increments, cycle_type, until_strain, until_displacement, until_force, &
+      least_increment, increment_growth, planned_increments
 
    integer, parameter :: analysis_static = 1    !! *STATIC: mechanics at given temperatures
    integer, parameter :: analysis_coupled = 2   !! *COUPLED TEMPERATURE-DISPLACEMENT, STEADY STATE

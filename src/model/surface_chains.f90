@@ -40,8 +40,7 @@ contains
 
       count_sides = size(surface%faces, 2)
       if (count_sides == 0) then
-         call set_error(error, status_deck, 'surface '//surface%name//' has no faces', &
-            surface%card)
+         call set_error(error, status_deck, 'surface '//surface%name//' has no faces', surface%card)
          return
       end if
       associate (counts => side_node_count(mesh%element_kind(surface%faces(1, :))))
@@ -211,8 +210,7 @@ contains
    !> of all where none has as many.
    pure integer function facing_chain(mesh, slave, masters) result(facing)
       type(mesh_type), intent(in) :: mesh
-      type(surface_chain_type), intent(in) :: slave
-      type(surface_chain_type), intent(in) :: masters(:)
+      type(surface_chain_type), intent(in) :: slave, masters(:)
       real(dp) :: apart(size(masters))
       logical :: fits(size(masters))
       integer :: j

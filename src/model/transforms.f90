@@ -36,8 +36,7 @@ contains
    pure function axes_at(transform, x) result(axes)
       type(transform_type), intent(in) :: transform
       real(dp), intent(in) :: x(2)             !! [length]
-      real(dp) :: axes(2, 2)
-      real(dp) :: first(2)
+      real(dp) :: axes(2, 2), first(2)
 
       axes = 0.0_dp
       first = transform%point
@@ -53,8 +52,7 @@ contains
    pure integer function axis_in_plane(transforms, node_sets, nodes, dof) result(axis)
       type(transform_type), intent(in) :: transforms(:)
       type(set_type), intent(in) :: node_sets(:)
-      integer, intent(in) :: nodes(:)
-      integer, intent(in) :: dof
+      integer, intent(in) :: nodes(:), dof
       integer :: i, k, out_of_plane(size(nodes))
 
       axis = dof

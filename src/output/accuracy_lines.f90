@@ -159,10 +159,8 @@ contains
          if (finding%is_met()) return
          words = words//reason(finding)
          if (finding%is_at_end .and. all(finding%no_estimate /= [at_corner, grows]) .and. &
-            accuracy%stands_still()) then
-            words = words//'; the peak is at an end of the face, where the pressure may grow '// &
-               'without limit'
-         end if
+            accuracy%stands_still()) words = words// &
+            '; the peak is at an end of the face, where the pressure may grow '//'without limit'
       end associate
    contains
       !> The uncertainty or what is allowed, as a part of the value's scale where the target is one;
@@ -285,8 +283,7 @@ contains
       end do
       quantity = estimated(accuracy%demands(d)%quantity)
       dataset = growing_dataset(path//'/'//trim(quantity%name), as_real, columns, 1, 1, &
-         'rounds of the requested accuracy: '//trim(quantity%description), &
-         quantity%unit)
+         'rounds of the requested accuracy: '//trim(quantity%description), quantity%unit)
       dataset%components = 'step value uncertainty target'
       call write_once(file, dataset, [rows])
    end subroutine write_demand

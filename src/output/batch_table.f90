@@ -9,8 +9,7 @@ module batch_table
    use name_index, only: name_index_type
    use open_files, only: replace_file
    use processes, only: reason_of, report_type
-   use text, only: append, counted, quoted, string_type, to_text, to_upper, &
-      with_decimals
+   use text, only: append, counted, quoted, string_type, to_text, to_upper, with_decimals
    use utf8, only: character_count, printable
    implicit none
    private

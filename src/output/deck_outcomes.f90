@@ -162,9 +162,8 @@ contains
          doubts = ''
          if (report%status == status_ok .and. reason_of(report) /= '') doubts = '; '// &
             reason_of(report)
-         call print_line(output_unit, self%path//': '//self%words()//', '// &
-            counted(report%increments, 'increment')//' in '//with_decimals(report%seconds, 2)// &
-            ' s'//doubts)
+         call print_line(output_unit, self%path//': '//self%words()//', '//counted( &
+            report%increments, 'increment')//' in '//with_decimals(report%seconds, 2)//' s'//doubts)
          ! Where its results are, and how many checks passed.
          allocate (lines(0))
          if (allocated(self%summary)) lines = self%summary

@@ -70,8 +70,7 @@ contains
 
    !> A dataset of a quantity, described by its entry; one column for each place where the quantity
    !> is of bodies or contact points and places are given.
-   pure function quantity_dataset(group, quantity, rows_at_once, times, places) &
-      result(dataset)
+   pure function quantity_dataset(group, quantity, rows_at_once, times, places) result(dataset)
       character(*), intent(in) :: group             !! path of its group, with a slash at the end
       type(quantity_type), intent(in) :: quantity
       integer, intent(in) :: rows_at_once, times    !! as for growing_dataset
@@ -84,8 +83,7 @@ contains
          if (any(quantity%kind == [of_bodies, of_contact_points])) width = places
       end if
       dataset = growing_dataset(group//trim(quantity%name), merge(as_integer, as_real, &
-         quantity%is_integer), width, rows_at_once, times, quantity%description, &
-         quantity%unit)
+         quantity%is_integer), width, rows_at_once, times, quantity%description, quantity%unit)
       dataset%components = quantity%components
    end function quantity_dataset
 

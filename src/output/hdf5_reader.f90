@@ -3,15 +3,13 @@
 !>
 !> The reader keeps its first error, and reads nothing after it: its user checks once, at the end.
 module hdf5_reader
-   use, intrinsic :: iso_c_binding, only: c_associated, c_char, c_f_pointer, c_loc, c_ptr, &
-      c_size_t
+   use, intrinsic :: iso_c_binding, only: c_associated, c_char, c_f_pointer, c_loc, c_ptr, c_size_t
    use errors, only: error_type, set_error, status_deck
    use file_calls, only: c_free, check_seal
    use hdf5, only: h5aclose_f, h5aexists_f, h5aopen_f, h5aread_f, h5dclose_f, h5dget_space_f, &
       h5dopen_f, h5dread_f, h5f_acc_rdonly_f, h5fclose_f, h5fopen_f, h5lexists_f, h5oclose_f, &
       h5oopen_f, h5s_select_set_f, h5sclose_f, h5screate_simple_f, h5sget_simple_extent_dims_f, &
-      h5sselect_hyperslab_f, h5t_native_double, h5tclose_f, hid_t, &
-      hsize_t
+      h5sselect_hyperslab_f, h5t_native_double, h5tclose_f, hid_t, hsize_t
    use hdf5_writer, only: make_text_type
    use kinds, only: dp
    use text, only: string_type

@@ -6,16 +6,15 @@ module hdf5_writer
    use, intrinsic :: iso_c_binding, only: c_char, c_loc, c_null_char, c_ptr
    use errors, only: error_type, set_error, status_internal
    use hdf5, only: hid_t, hsize_t, size_t, h5open_f, h5close_f, h5dont_atexit_f, h5eset_auto_f, &
-      h5fcreate_f, h5fopen_f, h5fclose_f, h5f_acc_trunc_f, h5f_acc_rdwr_f, &
-      h5pcreate_f, h5pclose_f, h5pset_libver_bounds_f, h5pset_buffer_f, h5p_file_access_f, &
-      h5p_dataset_create_f, h5p_dataset_xfer_f, &
-      h5f_libver_v18_f, h5f_libver_latest_f, h5gcreate_f, h5gclose_f, h5lcreate_hard_f, &
-      h5ldelete_f, h5lexists_f, h5gn_members_f, h5gget_obj_info_idx_f, &
-      h5screate_simple_f, h5screate_f, h5sclose_f, h5s_scalar_f, h5dcreate_f, h5dwrite_f, &
-      h5dclose_f, h5oopen_f, h5oclose_f, h5aopen_f, h5acreate_f, h5aexists_f, h5awrite_f, &
-      h5aclose_f, h5tcopy_f, h5tclose_f, h5tset_cset_f, h5tset_size_f, h5t_cset_utf8_f, &
-      h5t_string, h5t_native_character, h5t_native_double, h5t_native_integer, h5kind_to_type, &
-      h5_integer_kind, h5t_std_i32le, h5t_std_i64le, h5t_std_u8le, h5t_ieee_f64le
+      h5fcreate_f, h5fopen_f, h5fclose_f, h5f_acc_trunc_f, h5f_acc_rdwr_f, h5pcreate_f, &
+      h5pclose_f, h5pset_libver_bounds_f, h5pset_buffer_f, h5p_file_access_f, &
+      h5p_dataset_create_f, h5p_dataset_xfer_f, h5f_libver_v18_f, h5f_libver_latest_f, &
+      h5gcreate_f, h5gclose_f, h5lcreate_hard_f, h5ldelete_f, h5lexists_f, h5gn_members_f, &
+      h5gget_obj_info_idx_f, h5screate_simple_f, h5screate_f, h5sclose_f, h5s_scalar_f, &
+      h5dcreate_f, h5dwrite_f, h5dclose_f, h5oopen_f, h5oclose_f, h5aopen_f, h5acreate_f, &
+      h5aexists_f, h5awrite_f, h5aclose_f, h5tcopy_f, h5tclose_f, h5tset_cset_f, h5tset_size_f, &
+      h5t_cset_utf8_f, h5t_string, h5t_native_character, h5t_native_double, h5t_native_integer, &
+      h5kind_to_type, h5_integer_kind, h5t_std_i32le, h5t_std_i64le, h5t_std_u8le, h5t_ieee_f64le
    use kinds, only: dp, long
    use model, only: unit_labels_type
    use text, only: string_type

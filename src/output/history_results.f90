@@ -179,8 +179,7 @@ contains
             call history%sets(1)%append([real(record%increment, dp)])
             call history%sets(2)%append([record%time])
             do k = first_quantity, size(history%sets)
-               call history%sets(k)%append(values_of(history%names(k)%value, tables, &
-                  places == h))
+               call history%sets(k)%append(values_of(history%names(k)%value, tables, places == h))
             end do
          end associate
       end do

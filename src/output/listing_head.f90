@@ -163,8 +163,7 @@ contains
 
    subroutine print_entry(page, name, value)
       type(page_type), intent(inout) :: page
-      character(*), intent(in) :: name
-      character(*), intent(in) :: value
+      character(*), intent(in) :: name, value
 
       call page%wrapped('   '//name//' '//repeat('.', max(26 - len(name), 2))//' ', value)
    end subroutine print_entry

@@ -13,10 +13,9 @@ module listing_increments
    use mesh, only: mesh_type
    use no_estimates, only: mark_of, no_reason, not_on_finer_mesh, words_of_reason
    use model, only: model_type, uncertainty_full
-   use quantity_types, only: needs_coupling, needs_dilatation, needs_friction_heat, &
-      needs_heat, needs_mechanics, &
-      needs_branch, needs_nothing, needs_storage, &
-      of_bodies, of_history, of_interface, quantity_type
+   use quantity_types, only: needs_coupling, needs_dilatation, needs_friction_heat, needs_heat, &
+      needs_mechanics, needs_branch, needs_nothing, needs_storage, of_bodies, of_history, &
+      of_interface, quantity_type
    use records, only: attempt_record_type, body_uncertainty_type, contact_record_type, &
       increment_record_type, uncertainty_type
    use reported_quantities, only: quantities
@@ -52,9 +51,8 @@ contains
       passes = size(record%iterations)
       if (passes == 0) return
       call page%line('   iterations '//to_text(passes)//'   cut-backs '// &
-         to_text(record%cut_backs)//'   residual'// &
-         column(history_value('residual', record), 9, 2)//'  (floor'// &
-         column(history_value('residual_floor', record), 9, 2)//')')
+         to_text(record%cut_backs)//'   residual'//column(history_value('residual', record), 9, &
+         2)//'  (floor'//column(history_value('residual_floor', record), 9, 2)//')')
       if (.not. ieee_is_nan(record%coupling_gain)) call page%line(history_line(needs_coupling, &
          record))
    end subroutine print_increment
@@ -259,9 +257,8 @@ contains
 
       do q = 1, size(estimated)
          names(q) = ''
-         if (is_worth_telling(q, errors(q)%value, errors(q)%total) .and. &
-            .not. is_end_of_face(estimated(q), points, errors(q)%value)) &
-            names(q) = words_of(estimated(q)%name)
+         if (is_worth_telling(q, errors(q)%value, errors(q)%total) .and. .not. is_end_of_face( &
+            estimated(q), points, errors(q)%value)) names(q) = words_of(estimated(q)%name)
       end do
       call print_table(page, points%name, names(:)(:maxval([(len(words_of(estimated(q)%name)), &
          q=1, size(estimated))])), errors)
@@ -315,10 +312,9 @@ contains
             if (names(q) == '') cycle
             part = ieee_value(part, ieee_quiet_nan)
             if (abs(own%value) > 0.0_dp) part = 100.0_dp*own%total/abs(own%value)
-            call append(rows, trim('    '//names(q)//column(own%value, 14, 6)// &
-               cell(own%total, 13, 'no estimate')//cell(part, 11, '-')// &
-               cell(own%change, 12, '-')//cell(own%scatter, 14, '-')// &
-               cell(own%iteration, 14, '-')//'    '//largest_part(own)))
+            call append(rows, trim('    '//names(q)//column(own%value, 14, 6)//cell(own%total, 13, &
+               'no estimate')//cell(part, 11, '-')//cell(own%change, 12, '-')//cell(own%scatter, &
+               14, '-')//cell(own%iteration, 14, '-')//'    '//largest_part(own)))
          end associate
       end do
       call page%table('   NUMERICAL UNCERTAINTY (95 %) OF '//title//': how far values may be '// &

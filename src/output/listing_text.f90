@@ -181,9 +181,8 @@ contains
          return
       end if
       digits = 2
-      if (abs(value) >= 1.0e99_dp .or. (abs(value) > 0.0_dp .and. abs(value) < 1.0e-99_dp)) then
-         digits = 3
-      end if
+      if (abs(value) >= 1.0e99_dp .or. (abs(value) > 0.0_dp .and. abs(value) < 1.0e-99_dp)) digits &
+         = 3
       ! Beside the places there are a blank, a minus, a digit, the point, E and a sign.
       places = min(decimals, width - digits - merge(6, 5, value < 0.0_dp))
       if (abs(value) > 0.0_dp) then

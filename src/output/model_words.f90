@@ -15,11 +15,9 @@ module model_words
    use wear_laws, only: wear_law_type
    implicit none
    private
-   public :: expansion_words, law_words, material_words
-   public :: friction_words, friction_heat_words, overlap_words, wear_words
-   public :: open_law_words, closed_law_words
-   public :: open_words, pairing_words, points_words, section_words, step_words, from_to
-   public :: has_many, first_alike, alike_words
+   public :: expansion_words, law_words, material_words, friction_words, friction_heat_words, &
+      overlap_words, wear_words, open_law_words, closed_law_words, open_words, pairing_words, &
+      points_words, section_words, step_words, from_to, has_many, first_alike, alike_words
 
    integer, parameter :: most_told = 10   !! interfaces, bodies or sections that are told one by one
 
@@ -150,9 +148,8 @@ contains
       words = ''
       if (.not. allocated(points%is_open_corner)) return
       if (.not. any(points%is_open_corner)) return
-      words = to_text(count(points%is_open_corner))//' of '//to_text(size( &
-         points%is_open_corner))// &
-         ' slave corners have no master opposite and stay open'
+      words = to_text(count(points%is_open_corner))//' of '//to_text( &
+         size(points%is_open_corner))//' slave corners have no master opposite and stay open'
    end function open_words
 
    !> Whether interfaces, bodies or sections are too many to be told one by one.
@@ -165,8 +162,7 @@ contains
    !> The first interface, or section, with each description; of a few each has its own.
    pure function first_alike(texts) result(first)
       type(string_type), intent(in) :: texts(:)    !! descriptions of all
-      integer :: first(size(texts))
-      integer :: i, k
+      integer :: first(size(texts)), i, k
 
       do i = 1, size(texts)
          first(i) = i
@@ -245,8 +241,7 @@ contains
             call creep%find_strain(stress, temperature, 0.0_dp, [0.0_dp, 1.0_dp], strain, slope)
             words = words//'creeps by '//to_text(strain)//' in a time of 1 under '// &
                to_text(stress)//' (G/500)'
-            if (size(creep%temperature) > 1) words = words//' at temperature '// &
-               to_text(temperature)
+            if (size(creep%temperature) > 1) words = words//' at temperature '//to_text(temperature)
          end if
       end associate
       if (material%law%annealing > 0) then

@@ -196,8 +196,7 @@ contains
       do i = 1, size(request%quantities)
          associate (q => request%quantities(i))
             ! Positions are in every table.
-            if (q /= print_position) call add_columns(table%columns, '', q, &
-               any(table%axes > 0))
+            if (q /= print_position) call add_columns(table%columns, '', q, any(table%axes > 0))
          end associate
       end do
    end function table_of_points
@@ -245,8 +244,7 @@ contains
       do i = 1, size(request%quantities)
          associate (q => request%quantities(i))
             values = nodal_values(q, fields, table%member)
-            if (size(values, 1) == 0) table%absent = [character(5) :: table%absent, &
-               print_keys(q)]
+            if (size(values, 1) == 0) table%absent = [character(5) :: table%absent, print_keys(q)]
             do k = 1, size(table%totals)
                associate (total => table%totals(k))
                   if (total%quantity /= q) cycle

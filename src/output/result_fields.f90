@@ -49,8 +49,7 @@ module result_fields
 
    !> Growing parts of a grid.
    type :: vtk_grid_type
-      type(quantity_type), allocatable :: point_data(:)
-      type(quantity_type), allocatable :: cell_data(:)
+      type(quantity_type), allocatable :: point_data(:), cell_data(:)
       !> Datasets, one for each of `point_data`, then one for each of `cell_data`
       type(growing_dataset_type), allocatable :: sets(:)
       integer :: points = 0                                        !! number of points
@@ -222,9 +221,8 @@ contains
          ! Nodes of faces that slide have no contact quantities where nothing is opposite.
          associate (start => interfaces(i)%at_face_nodes%start)
             do k = self%face_start(i), self%face_start(i + 1) - 1
-               if (start(self%face_row(k) + 1) > start(self%face_row(k))) then
-                  values(self%face_point(k)) = face(self%face_row(k))
-               end if
+               if (start(self%face_row(k) + 1) > start(self%face_row(k))) values(self%face_point( &
+                  k)) = face(self%face_row(k))
             end do
          end associate
       end do
@@ -286,8 +284,7 @@ contains
       integer, allocatable :: ends(:, :), interface_of(:)
       integer :: cells, first, i, k, m
 
-      allocate (points(3, sum([(size(interfaces(i)%slave), i=1, size(interfaces))])), &
-         source=0.0_dp)
+      allocate (points(3, sum([(size(interfaces(i)%slave), i=1, size(interfaces))])), source=0.0_dp)
       allocate (ends(2, size(points, 2)), interface_of(size(points, 2)))
       cells = 0
       first = 0

@@ -127,8 +127,7 @@ contains
          quantities(i)%values = 5
          quantities(i)%components = 'value uncertainty change scatter iteration'
          quantities(i)%description = 'value and its numerical uncertainty (95 %), with its '// &
-            'parts: '// &
-            trim(estimated(i)%description)
+            'parts: '//trim(estimated(i)%description)
          reason%components = trim(reason%components)//' '//estimated(i)%name
       end do
       reason%components = adjustl(reason%components)

@@ -187,9 +187,8 @@ contains
             datasets(of_bodies, has)], model%mesh%body_count, expected)
          call tables(convergence)%start('/convergence', datasets(of_passes, has), 0, 8*expected)
          do i = 1, n
-            call tables(3 + i)%start('/contact/'//interfaces(i)%name, &
-               [datasets(of_contact_points, has), datasets(of_interface, has)], &
-               size(interfaces(i)%slave), expected)
+            call tables(3 + i)%start('/contact/'//interfaces(i)%name, [datasets(of_contact_points, &
+               has), datasets(of_interface, has)], size(interfaces(i)%slave), expected)
          end do
          call tables(4 + n)%start('/uncertainty', [step_time], 0, steps)
          do i = 1, n
@@ -197,9 +196,8 @@ contains
                with_uncertainty(estimated), 0, steps)
          end do
          do i = 1, bodies
-            call tables(4 + 2*n + i)%start('/uncertainty/body '//to_text(i), &
-               with_uncertainty(pack(maxima, has(maxima%needs) .or. maxima%needs /= needs_laws)), &
-               0, steps)
+            call tables(4 + 2*n + i)%start('/uncertainty/body '//to_text(i), with_uncertainty( &
+               pack(maxima, has(maxima%needs) .or. maxima%needs /= needs_laws)), 0, steps)
          end do
          if (is_full(model)) call tables(size(tables))%start('/uncertainty/increment', &
             with_uncertainty(pack(history_estimated, has(history_estimated%needs) .or. &

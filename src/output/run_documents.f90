@@ -11,8 +11,7 @@ module run_documents
    use json, only: json_type
    use kinds, only: dp
    use model, only: model_type
-   use no_estimates, only: no_finer_value, no_reason, of_checks, reason_inside_step, &
-      words_of_reason
+   use no_estimates, only: no_finer_value, no_reason, of_checks, reason_inside_step, words_of_reason
    use quantity_types, only: find_quantity, of_interface, quantity_type
    use records, only: uncertainty_type
    use result_rows, only: result_row_type

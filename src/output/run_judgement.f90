@@ -155,9 +155,8 @@ contains
             'all increments')
          do i = 1, size(interfaces)
             if (self%closes(i) .or. count(.not. self%closes(:i)) > most_named) cycle
-            call append(lines, &
-               'contact pair '//interfaces(i)%name//' never closes: its smallest '// &
-               'gap is '//to_text(self%smallest_gap(i)))
+            call append(lines, 'contact pair '//interfaces(i)%name// &
+               ' never closes: its smallest '//'gap is '//to_text(self%smallest_gap(i)))
          end do
          associate (others => count(.not. self%closes) - most_named)
             if (others > 0) call append(lines, counted(others, 'further contact pair')// &

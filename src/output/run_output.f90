@@ -141,8 +141,7 @@ contains
 
       call self%progress%clear()
       do i = 1, size(warnings)
-         call print_line(error_unit, or_blank(self%run%deck_path)//': warning: '// &
-            warnings(i)%value)
+         call print_line(error_unit, or_blank(self%run%deck_path)//': warning: '//warnings(i)%value)
       end do
    end subroutine print_warnings
 

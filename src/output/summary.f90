@@ -224,9 +224,8 @@ contains
          call append(lines, self%steps(i)%value)
       end do
       call append(lines, 'at '//when(self, or_blank(model%load_label))//':')
-      if (allocated(self%folds)) call append(lines, 'the branch turns at load factor'// &
-         trim(merge('s', ' ', size(self%folds) > 1))//' '//listed(self%folds)// &
-         mark_of(reason_of_run(model)))
+      if (allocated(self%folds)) call append(lines, 'the branch turns at load factor'//trim(merge( &
+         's', ' ', size(self%folds) > 1))//' '//listed(self%folds)//mark_of(reason_of_run(model)))
       if (has_many(size(interfaces))) then
          call add_largest(self, model, interfaces, lines)
          call add_fields(self, model, lines)
@@ -530,8 +529,7 @@ contains
             uncertainty = mark_of(reason_inside_step(model))
          end if
          line = summary_line(name, values(1), uncertainty, unit_label(estimated(q)%unit, &
-            model%units), &
-            zone)
+            model%units), zone)
          if (allocated(self%last%uncertainties) .and. estimated(q)%name == 'peak_pressure') then
             if (self%last%uncertainties(q, i)%no_estimate == no_reason .and. rises_to_end(points, &
                self%last%contacts(i))) line = line//', at an end, where it may have no limit'

@@ -76,10 +76,8 @@ contains
             no_estimate = record%check_uncertainties(i)%no_estimate
             uncertainty = record%check_uncertainties(i)%total
          end if
-         if (is_followed(model%verifications(i), record, model)) then
-            call self%levels(i)%follow(model%verifications(i), record, model, interfaces, &
-               point_node, uncertainty)
-         end if
+         if (is_followed(model%verifications(i), record, model)) call self%levels(i)%follow( &
+            model%verifications(i), record, model, interfaces, point_node, uncertainty)
          if (.not. is_judged(model%verifications(i), record, model)) cycle
          if (allocated(model%verifications(i)%level)) then
             call self%levels(i)%times(values, uncertainty, reason)
@@ -92,10 +90,8 @@ contains
          self%outcomes(i) = outcome_of(model%verifications(i), values, reason)
          self%outcomes(i)%time = record%time
          if (len(self%outcomes(i)%reason) > 0) cycle
-         if (.not. (self%outcomes(i)%passed .and. model%verifications(i)%expects)) then
-            self%outcomes(i)%node = worst_node(model%verifications(i), model%mesh, point_node, &
-               values)
-         end if
+         if (.not. (self%outcomes(i)%passed .and. model%verifications(i)%expects)) self%outcomes( &
+            i)%node = worst_node(model%verifications(i), model%mesh, point_node, values)
          if (.not. is_estimable(model%verifications(i))) cycle
          if (is_of_motions(model%verifications(i))) then
             no_estimate = no_finer_value

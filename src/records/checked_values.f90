@@ -226,8 +226,7 @@ contains
       character(*), intent(in) :: where
       type(mesh_type), intent(in) :: mesh
       integer, intent(in) :: point_node(:)
-      logical :: wanted(size(point_node))
-      logical :: of_node(size(mesh%node_number))
+      logical :: wanted(size(point_node)), of_node(size(mesh%node_number))
       integer :: number, i
       logical :: is_number
 

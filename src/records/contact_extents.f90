@@ -104,8 +104,7 @@ contains
       type(contact_record_type), intent(in) :: contact    !! its state
       logical, allocatable :: at_end(:)                   !! (2 pieces)
 
-      at_end = maxloc(contact%pressure, dim=1) == points%ends() .and. &
-         any(contact%pressure > 0.0_dp)
+      at_end = maxloc(contact%pressure, dim=1) == points%ends() .and. any(contact%pressure > 0.0_dp)
    end function peak_is_at_end
 
    !> Whether the pressure is largest at a corner, where one of two faces ends. It varies as a power

@@ -236,9 +236,8 @@ contains
          end if
       end if
       record%work = work_record_type(record%work%columns_again + before%work%columns_again, &
-         record%work%columns_full + before%work%columns_full, &
-         record%work%flops_again + before%work%flops_again, &
-         record%work%flops_full + before%work%flops_full)
+         record%work%columns_full + before%work%columns_full, record%work%flops_again + &
+         before%work%flops_again, record%work%flops_full + before%work%flops_full)
    end subroutine add_attempts
 
    !> Notes that the last attempt at an increment failed.

@@ -5,13 +5,11 @@ module command_line
    use kinds, only: dp
    use model, only: uncertainty_named
    use spelling, only: nearest_known
-   use text, only: append, read_integer, read_real, split_words, string_type, &
-      to_upper
+   use text, only: append, read_integer, read_real, split_words, string_type, to_upper
    implicit none
    private
-   public :: command_type, read_command, settings_in_words, usage
-   public :: command_run, command_check, command_trade, command_help, command_version, &
-      command_keywords
+   public :: command_type, read_command, settings_in_words, usage, command_run, command_check, &
+      command_trade, command_help, command_version, command_keywords
 
    integer, parameter :: command_run = 1       !! solve
    integer, parameter :: command_check = 2     !! read and check only
@@ -23,8 +21,7 @@ module command_line
    ! For messages on misspelt words.
    character(*), parameter :: known_commands = 'run/check/trade/help'
    character(*), parameter :: known_options = '--out/--jobs/--width/--set/--limit/--accuracy/'// &
-      '--errors/--restart/--resume/--table/--quiet/--json/--help/--version/'// &
-      '--keywords'
+      '--errors/--restart/--resume/--table/--quiet/--json/--help/--version/'//'--keywords'
 
    character(4), parameter :: errors_words(0:2) = ['no  ', 'last', 'full']   !! of --errors
 
@@ -61,16 +58,14 @@ module command_line
       '       thercon check DECK... [--width N] [--set NAME=VALUE] [--quiet] [--json]', &
       '       thercon trade DECK [--out DIR] [--width N] [--set NAME=VALUE] [--quiet]', &
       '                          [--limit SECONDS] [--jobs N]', &
-      '       thercon --help | --version | --keywords [KEYWORD]', &
-      '', &
+      '       thercon --help | --version | --keywords [KEYWORD]', '', &
       '  run      solve each deck a/b.inp; write to DIR b.vtkhdf, b.lst, b.sta, b.cvg and, with', &
       '           contact, b.contact.vtkhdf;', &
       '           several decks run as a batch, each in a process of its own, and are listed', &
       '           in DIR/thercon-batch.csv', &
       '  check    read each deck and report every mistake; solve nothing', &
       '  trade    solve a deck with other meshes, increments and methods; measure CPU seconds,', &
-      '           memory and errors; recommend settings for 10, 1 and 0.1 %; DIR/b.trade.csv', &
-      '', &
+      '           memory and errors; recommend settings for 10, 1 and 0.1 %; DIR/b.trade.csv', '', &
       '  --out DIR          write results to this folder, created if missing (current folder)', &
       '  --width N          allow N columns in a card (256)', &
       '  --set NAME=VALUE   override the value of a *PARAMETER of the deck', &
@@ -93,12 +88,10 @@ module command_line
       '                     trade: skip rows that would take more CPU time (30)', &
       '  --keywords         print the keywords of decks, their data cards and parameters, or', &
       '                     of those that begin with KEYWORD', &
-      '  --jobs N           solve N decks at a time, or measure N rows of a trade (1)', &
-      '', &
+      '  --jobs N           solve N decks at a time, or measure N rows of a trade (1)', '', &
       'exit status: 0 ok, 1 deck error, 2 no convergence, 3 internal or I/O error,', &
       '             4 a *VERIFY check failed or a requested accuracy was not reached,', &
-      '             5 ended by SIGINT or SIGTERM; of several decks the largest', &
-      '', &
+      '             5 ended by SIGINT or SIGTERM; of several decks the largest', '', &
       'pictures:    thercon-plot, thercon-report (one HTML page) and thercon-compare; in the', &
       '             source tree post/plot, post/report and post/compare', &
       'documents:   share/thercon/docs of the installation, docs of the source tree; deck.md', &
@@ -234,12 +227,11 @@ contains
          end if
          return
       end select
-      if (command%action == command_check .and. word == '--out' .or. &
-         command%action == command_check .and. word == '--jobs' .or. &
-         command%action /= command_run .and. any(word == [character(10) :: '--accuracy', &
-         '--errors', '--table']) .or. &
-         command%action == command_trade .and. word == '--restart' .or. &
-         command%action == command_check .and. word == '--limit') then
+      if (command%action == command_check .and. word == '--out' .or. command%action == &
+         command_check .and. word == '--jobs' .or. command%action /= command_run .and. any(word == &
+         [character(10) :: '--accuracy', '--errors', '--table']) .or. command%action == &
+         command_trade .and. word == '--restart' .or. command%action == command_check .and. word &
+         == '--limit') then
          call set_error(error, status_deck, 'option '//word//' does not go with '//argument(1))
          return
       end if
@@ -292,9 +284,8 @@ contains
             'option --limit needs a number of seconds above 0, such as 60s, not '//value)
       case ('--out')
          command%folder = value
-         if (len(value) > 1 .and. index(value, '/', back=.true.) == len(value)) then
-            command%folder = value(:len(value) - 1)
-         end if
+         if (len(value) > 1 .and. index(value, '/', back=.true.) == len(value)) command%folder = &
+            value(:len(value) - 1)
       case ('--set')
          call append(command%settings, value)
       case ('--table')

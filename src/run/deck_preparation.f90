@@ -215,8 +215,7 @@ contains
             simulation%state%temperature)
          associate (points => simulation%bodies%points)
             call check_step(cards%keywords(begins(step))%place, model, simulation, &
-               laws_of_step(model, points, step), loads, step, &
-               report)
+               laws_of_step(model, points, step), loads, step, report)
          end associate
          if (report%has_errors()) return
       end do

@@ -143,9 +143,8 @@ contains
       run%contact_biot = [huge(1.0_dp), 0.0_dp]
       do i = 1, size(model%contacts)
          element = model%mesh%surfaces(model%contacts(i)%slave)%faces(1, 1)
-         associate (material => &
-            model%materials(model%sections(model%mesh%element_section(element))%material), &
-            points => simulation%bodies%points)
+         associate (material => model%materials(model%sections( &
+            model%mesh%element_section(element))%material), points => simulation%bodies%points)
             conductivity = sqrt(product(material%conductivity))
             length = simulation%bodies%interfaces(i)%length()
             first = points%interface_start(i)

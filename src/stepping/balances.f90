@@ -94,10 +94,9 @@ contains
             content_noise*maxval(abs(data%equation%content_old))/data%equation%duration)
          if (allocated(data%equation%taken_up)) scale = max(scale, &
             maxval(abs(data%equation%taken_up))/data%equation%duration)
-         if (allocated(bodies%dilatation%absolute) .and. data%equation%duration > 0.0_dp) then
-            scale = max(scale, content_noise*maxval(abs(bodies%capacity%multiply( &
+         if (allocated(bodies%dilatation%absolute) .and. data%equation%duration > 0.0_dp) scale = &
+            max(scale, content_noise*maxval(abs(bodies%capacity%multiply( &
             bodies%dilatation%absolute)))/data%equation%duration)
-         end if
          record%fields%reaction_heat = merge(residual, 0.0_dp, prescribed)
          record%fields%external_heat = record%fields%reaction_heat + rates%entering
          rates%crossing = heat_across(bodies%points%weight, omega, next%jump)
@@ -166,8 +165,7 @@ contains
    !> Net rates, one per load card and per card of prescribed temperatures, summed by their sign.
    pure subroutine sum_rates(loads, temperature, residual, record)
       type(loads_type), intent(in) :: loads
-      real(dp), intent(in) :: temperature(:)
-      real(dp), intent(in) :: residual(:)
+      real(dp), intent(in) :: temperature(:), residual(:)
       type(increment_record_type), intent(inout) :: record
       real(dp) :: net(0:maxval(loads%temperature%card))
       real(dp), allocatable :: rates(:)
@@ -217,12 +215,10 @@ contains
       least = least_displacement(model, next%temperature)
       scales%length = max(bodies%largest_displacement(next%displacement), least, tiny(1.0_dp), &
          bodies%equilibrium%contact%least_length/noise)
-      if (size(bodies%points%initial_gap) > 0) then
-         scales%length = max(scales%length, noise*maxval(abs(bodies%points%initial_gap)))
-      end if
-      internal = bodies%mechanical%matrix%multiply(next%displacement) - &
-         unstrained_forces(bodies, next%temperature - model%initial_temperature, &
-         next%forces_beyond)
+      if (size(bodies%points%initial_gap) > 0) scales%length = max(scales%length, noise*maxval( &
+         abs(bodies%points%initial_gap)))
+      internal = bodies%mechanical%matrix%multiply(next%displacement) - unstrained_forces(bodies, &
+         next%temperature - model%initial_temperature, next%forces_beyond)
       stiffness = bodies%mechanical%largest_entry
       ! What contact points drop as rounding is no imbalance, not even if a body sums all of it.
       dropped = size(next%contact%force)*bodies%equilibrium%contact%least_force()
@@ -241,8 +237,7 @@ contains
             noise*stiffness*scales%length, least*stiffness, dropped/noise, tiny(1.0_dp))
          along_x = all(model%mesh%element_plane /= axisymmetric)
          record%force_imbalance = imbalance(internal - bar_forces(bodies, next%displacement, &
-            next%temperature - model%initial_temperature), even, prescribed, &
-            model%mesh%node_body, &
+            next%temperature - model%initial_temperature), even, prescribed, model%mesh%node_body, &
             [along_x, .true.], scales%force)
          positions = bodies%points%relative(next%displacement)
          positions = reshape([loads%present_gaps(bodies%points) - sum(positions* &
@@ -254,8 +249,7 @@ contains
          friction = bodies%laws%nodal_friction
          where (bodies%equilibrium%contact%tangent == 0) friction%coefficient = 0.0_dp
          record%contact_violation = contact_violation(positions, residual, prescribed, &
-            bodies%points, &
-            next%contact, friction, scales)
+            bodies%points, next%contact, friction, scales)
          record%fields%reaction = on_nodes(bodies%points%partners, reshape(merge(residual, &
             0.0_dp, prescribed), [2, size(next%temperature)]))
       end associate
@@ -300,8 +294,7 @@ contains
    !> supports' reactions against all that is applied to the body, by loads and through its
    !> contacts. Along the radius of an axisymmetric body there is no such sum: the hoop stress takes
    !> part of it.
-   pure function imbalance(internal, residual, supported, node_body, summed, scale) &
-      result(relative)
+   pure function imbalance(internal, residual, supported, node_body, summed, scale) result(relative)
       real(dp), intent(in) :: internal(:)      !! (components*nodes) of the bodies alone, K T or K u
       real(dp), intent(in) :: residual(:)      !! (components*nodes) as from the functions above
       logical, intent(in) :: supported(:)      !! (components*nodes) prescribed rows
@@ -380,9 +373,8 @@ contains
             violation = max(violation, abs(abs(shear_force) - cone))
             violation = max(violation, min(slip*sign(1.0_dp, shear_force), abs(shear_force)))
          end if
-         if (state%contact_state(k) == contact_stick) then
-            violation = max(violation, abs(shear_force) - cone, abs(slip))
-         end if
+         if (state%contact_state(k) == contact_stick) violation = max(violation, abs(shear_force) &
+            - cone, abs(slip))
       end do
    end function contact_violation
 

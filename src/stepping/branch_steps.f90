@@ -82,8 +82,7 @@ contains
          self%length = 0.5_dp*self%tried
       end do
       if (allocated(error)) return
-      if (.not. self%is_last .and. self%points + 1 >= &
-         self%asked%most_points) then
+      if (.not. self%is_last .and. self%points + 1 >= self%asked%most_points) then
          self%is_last = .true.
          self%ending = 'it has as many points as POINTS= allows'
       end if
@@ -105,8 +104,7 @@ contains
       if (self%is_followed) then
          self%base = self%point
          where (self%contact%direction /= 0) self%direction = self%contact%direction
-         if (.not. self%is_fold) self%length = min(2*self%tried, &
-            self%asked%longest_step)
+         if (.not. self%is_fold) self%length = min(2*self%tried, self%asked%longest_step)
       else
          self%base%factor = factor
       end if

@@ -69,8 +69,7 @@ contains
          position(:, self%samples%first(e):self%samples%first(e + 1) - 1) = &
             self%samples%positions(model%mesh, e)
       end do
-      call self%patches%prepare(model%mesh, self%points, self%samples%first, position, &
-         counts)
+      call self%patches%prepare(model%mesh, self%points, self%samples%first, position, counts)
       call measure_factors(self)
       if (any(has_law(model%materials)) .or. any([(allocated(model%steps(e)%element_prints), &
          e=1, size(model%steps))])) call prepare_integration(self, model)

@@ -5,7 +5,7 @@ module due_output
    use kinds, only: dp
    use model, only: model_type, verify_type
    use records, only: increment_record_type
-   use time_points, only: time_points_type
+   use print_requests, only: time_points_type
    implicit none
    private
    public :: ends_run, fields_are_due, is_followed, is_judged, is_nth, met_within, &

@@ -8,10 +8,9 @@ module energies
    use material_laws, only: law_points_type
    use point_histories, only: point_history_type
    use model, only: model_type
-   use point_fields, only: point_fields_type
    use point_rules, only: most => most_points_of_rule
    use records, only: increment_record_type
-   use simulation, only: simulation_type
+   use simulation, only: point_fields_type, simulation_type
    use solution_state, only: solution_state_type
    use transforms, only: on_nodes
    implicit none
@@ -52,7 +51,7 @@ contains
       if (any(abs(next%stress_temperature - temperature) > 0.0_dp)) then
          if (.not. allocated(run%point_fields%stress)) run%point_fields = fields_of(run, model, &
             run%state)
-   ! On strains that temperatures free, and what elasticity that follows them adds to the energy.
+         ! On strains that temperatures free, and what elasticity that follows them adds.
          associate (before => run%point_fields)
             next%work(2) = next%work(2) + dot_product(after%volume, sum(after%stress* &
                before%elastic - before%stress*after%elastic - (before%stress + after%stress)* &

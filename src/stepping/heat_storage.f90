@@ -77,8 +77,7 @@ contains
       stage%passing%is_last = .true.
       if (stage%stores_heat) then
          stage%temperature = start%temperature + weight*(middle%temperature - start%temperature)
-         stage%displacement = start%displacement + weight*(middle%displacement - &
-            start%displacement)
+         stage%displacement = start%displacement + weight*(middle%displacement - start%displacement)
          if (run%corrections%corrects) stage%content = stage%content + weight* &
             (run%corrections%true_contents(model, middle%temperature) - stage%content)
       end if
@@ -102,8 +101,7 @@ contains
       integer :: i
 
       call run%loads%move_to(run%control%instant_at(model, 0.0_dp), model)
-      associate (bodies => run%bodies, loads => run%loads, &
-         by => run%bodies%thermal%map%by_unknowns)
+      associate (bodies => run%bodies, loads => run%loads, by => run%bodies%thermal%map%by_unknowns)
          temperature = bodies%thermal%map%carried_along(state%temperature, merge( &
             loads%temperature%value, 0.0_dp, loads%temperature%active))
          state%jump = state%jump + bodies%points%jumps(temperature - state%temperature)

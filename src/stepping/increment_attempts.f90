@@ -12,8 +12,7 @@ module increment_attempts
    use errors, only: error_type, set_error, status_internal, status_no_convergence
    use friction_heating, only: nodal_friction_heat
    use heat_storage, only: begin_first_stage, begin_second_stage, measure_changes, measure_strains
-   use increment_checks, only: check_heat, check_record, note_shock, warn_of_choices, &
-      warn_of_tables
+   use increment_checks, only: check_heat, check_record, note_shock, warn_of_choices, warn_of_tables
    use increment_data, only: load_places, stage_type, trial_type
    use increment_records, only: complete_record
    use field_problem, only: solved_loads_type
@@ -180,19 +179,16 @@ contains
          next%dilatation = 0.0_dp
          if (run%corrections%heats .and. step%is_transient) next%dilatation = &
             -sum(run%corrections%inelastic_heat(model))/attempt%stage%duration
-         if (step%dilates) next%dilatation = sum(bodies%dilatation%of_strains( &
-            bodies%thermal_load, next%displacement - attempt%before%displacement))/ &
-            attempt%stage%size
+         if (step%dilates) next%dilatation = sum(bodies%dilatation%of_strains(bodies%thermal_load, &
+            next%displacement - attempt%before%displacement))/attempt%stage%size
          if (attempt%stage%is_last) then
             if (attempt%stage%stores_heat .and. run%corrections%melting%acts) then
                call run%corrections%melting%find_solid_time(model, reshape([ &
                   run%state%temperature, next%temperature], [size(next%temperature), 2]), &
                   attempt%stage%passing%instants, next%solid_time)
-               if (allocated(next%solid_time) .and. .not. allocated(run%state%solid_time)) &
-                  then
-                  call append(record%notes, 'the last point is solid at time '//to_text( &
-                     next%solid_time(1)))
-               end if
+               if (allocated(next%solid_time) .and. .not. allocated(run%state%solid_time)) call &
+                  append(record%notes, 'the last point is solid at time '//to_text( &
+                  next%solid_time(1)))
             end if
             since = wall_seconds()
             call complete_record(bodies, model, run%recovery, run%loads, attempt%data, next, record)
@@ -476,9 +472,8 @@ contains
             attempt%trial_type, error)
          attempt%record%solution_report_type = workspace%record
          run%seconds%iterate = run%seconds%iterate + (wall_seconds() - since)
-         if (solves_heat(step%analysis)) then
-            call check_heat(run, model, data%equation%contact_diagonal(next%omega) > 0.0_dp, error)
-         end if
+         if (solves_heat(step%analysis)) call check_heat(run, model, &
+            data%equation%contact_diagonal(next%omega) > 0.0_dp, error)
          if (allocated(error)) then
             if (workspace%contact%driven) error%message = error%message// &
                unconstrained_now(model, bodies%points, bodies%laws%friction%coefficient > 0.0_dp, &

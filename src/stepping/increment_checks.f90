@@ -132,8 +132,7 @@ contains
          free = unconstrained_now(model, run%bodies%points, &
             run%bodies%laws%friction%coefficient > 0.0_dp, run%loads%displacement%active, &
             merge(contact_open, next%contact%contact_state, next%idle .or. next%resting))
-         if (len(free) > 0) words = &
-            free(3:)//'; no load drives it: the smallest movement is used'
+         if (len(free) > 0) words = free(3:)//'; no load drives it: the smallest movement is used'
       end if
       if (words /= undecided .and. len(words) > 0) call record%warn(words)
       undecided = words
@@ -245,10 +244,9 @@ contains
          if (.not. follows_temperature(model%materials(m))) cycle
          is_of = .false.
          do e = 1, size(model%mesh%element_kind)
-            if (model%sections(model%mesh%element_section(e))%material == m) then
-               is_of(model%mesh%element_nodes(:element_node_count(model%mesh%element_kind(e)), &
-               e)) = .true.
-            end if
+            if (model%sections(model%mesh%element_section(e))%material == m) is_of( &
+               model%mesh%element_nodes(:element_node_count(model%mesh%element_kind(e)), e)) = &
+               .true.
          end do
          if (.not. any(is_of)) cycle
          associate (t => record%fields%temperature)
@@ -279,9 +277,8 @@ contains
             end do
             if (len(left) > 0) call record%warn(body_name(model, model%mesh%node_body(node))// &
                ' leaves the tables of '//material%name//where//', and their values there are '// &
-               'held: temperature ', there, ' at node '// &
-               to_text(model%mesh%node_number(node))//', time '//to_text(record%time)//'; '// &
-               left(3:), severity=beyond)
+               'held: temperature ', there, ' at node '//to_text(model%mesh%node_number(node))// &
+               ', time '//to_text(record%time)//'; '//left(3:), severity=beyond)
          end associate
       end subroutine warn_of_end
    end subroutine warn_of_materials

@@ -116,9 +116,8 @@ contains
             record%heat_imbalance_pointwise = record%heat_in
             record%contacts%heat_rate = record%heat_in
          end if
-         if (allocated(step%element_prints)) then
-            record%element_points = points_of_elements(model, recovery, step, next, record)
-         end if
+         if (allocated(step%element_prints)) record%element_points = points_of_elements(model, &
+            recovery, step, next, record)
       end associate
    end subroutine complete_record
 
@@ -177,9 +176,8 @@ contains
             if (slide%point == 0 .or. excess(i) <= least) cycle
             call record%warn('contact pair '//bodies%interfaces(i)%name//' slides by ', &
                slide%slip, ', too far for contact points of the undeformed mesh: slave node '// &
-               to_text(model%mesh%node_number(bodies%points%slave( &
-               bodies%points%interface_start(i) - 1 + slide%point)))//' '//slide%words, &
-               slide%excess)
+               to_text(model%mesh%node_number(bodies%points%slave(bodies%points%interface_start(i) &
+               - 1 + slide%point)))//' '//slide%words, slide%excess)
          end associate
       end do
       associate (others => count(record%contacts%slide%point > 0 .and. excess <= least))
@@ -282,9 +280,8 @@ contains
             if (beside > 0) then
                record%conductance(k) = record%conductance(beside)
             else if (rests(k)) then
-               law = law_at(bodies%laws%conductance(row), face_temperatures_type( &
-                  0.5_dp*(record%slave_temperature(k) + record%master_temperature(k)), &
-                  next%jump(row)))
+               law = law_at(bodies%laws%conductance(row), face_temperatures_type(0.5_dp*( &
+                  record%slave_temperature(k) + record%master_temperature(k)), next%jump(row)))
                record%conductance(k) = conductance(law, .true., 0.0_dp, record%pressure(k))
             end if
          end associate
@@ -307,10 +304,9 @@ contains
             call bodies%view(i, points)
             contacts(i)%contact_state = contact%contact_state(first:last)
             contacts(i)%gap = contact%gap(first:last)
-            call measure_contact(points, bodies%laws%friction(first), &
-               contacts(i)%contact_state /= contact_open, contact%force(first:last), &
-               contact%shear_force(first:last), overlaps(bodies, contact%force, first, last), &
-               contacts(i))
+            call measure_contact(points, bodies%laws%friction(first), contacts(i)%contact_state /= &
+               contact_open, contact%force(first:last), contact%shear_force(first:last), overlaps( &
+               bodies, contact%force, first, last), contacts(i))
             contacts(i)%heat_rate = sum(heat_across(points%weight, &
                state%flux_conductance(first:last), state%jump(first:last)))
          end do
@@ -347,9 +343,8 @@ contains
       record%shear = shears(points, shear_force, closed, friction, record%pressure)
       record%normal_force = sum(force)
       record%shear_force = sum(shear_force)
-      if (abs(record%shear_force) <= no_shear*sum(abs(force) + abs(shear_force))) then
+      if (abs(record%shear_force) <= no_shear*sum(abs(force) + abs(shear_force))) &
          record%shear_force = 0.0_dp
-      end if
       profile = contact_profile(points, record%contact_state, record%pressure, record%shear, &
          record%gap - overlap)
       call contact_edges(profile, record%edges_contact, record%edge_contact)

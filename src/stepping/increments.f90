@@ -80,9 +80,8 @@ contains
       call warn_of_pivot(run, record)
       run%sizes%corrections = run%sizes%corrections + record%corrections
       run%sizes%most_corrections = max(run%sizes%most_corrections, record%corrections)
-      if (run%corrections%has_laws .and. solves_mechanics(model%steps(record%step)%analysis)) then
-         call measure_energies(run, model, attempt%next, record)
-      end if
+      if (run%corrections%has_laws .and. solves_mechanics(model%steps(record%step)%analysis)) call &
+         measure_energies(run, model, attempt%next, record)
       call accept_increment(attempt%next, model, run%state, record)
       call move_alloc(attempt%known, run%known)
       call move_alloc(attempt%undecided, run%undecided)
@@ -94,8 +93,7 @@ contains
       if (.not. model%steps(run%control%step)%continuation%is_on) return
       call accept_point(run%branch, record%load_factor)
       run%control%branch_ended = run%branch%is_last
-      if (run%branch%is_last) call append(record%notes, 'the branch ends here: '// &
-         run%branch%ending)
+      if (run%branch%is_last) call append(record%notes, 'the branch ends here: '//run%branch%ending)
    end subroutine advance
 
    !> Makes the next attempt shorter than one that failed, if that is possible; else the error says

@@ -265,8 +265,7 @@ contains
       self%passes = self%passes + 1
       left_over = corrections_of(self, model, bodies, next%temperature, &
          next%displacement) - self%values
-      if (.not. allocated(self%scale)) self%scale = scales_of(self, model, bodies, &
-         next)
+      if (.not. allocated(self%scale)) self%scale = scales_of(self, model, bodies, next)
       last = self%left_over
       left_over = left_over/self%scale
       self%left_over = maxval(abs(left_over))
@@ -325,8 +324,7 @@ contains
       associate (passes => self%passes - self%renewed_at, left_over => self%left_over, &
          is_renewed => self%renewed_at > 0)
          if (.not. self%has_laws) then
-            self%asks_operators = passes > 1 .and. .not. is_renewed .and. &
-               left_over > contracts*last
+            self%asks_operators = passes > 1 .and. .not. is_renewed .and. left_over > contracts*last
             return
          end if
          if (passes > 1 .and. left_over > slow*last) self%slow_passes = self%slow_passes + 1
@@ -644,10 +642,9 @@ contains
                associate (own => self%points%at_point(e, g))
                   ! The part that energy has: operators are symmetric. A part of the elasticity
                   ! keeps them regular.
-                  tangent(16*own - 15:16*own) = [(1.0_dp - self%elastic_part)/2*( &
-                     points%tangent(:, :, g) + transpose(points%tangent(:, :, g))) + &
-                     self%elastic_part*points%stiffness(g)* &
-                     self%points%materials(own)%elasticity]
+                  tangent(16*own - 15:16*own) = [(1.0_dp - self%elastic_part)/2*(points%tangent(:, &
+                     :, g) + transpose(points%tangent(:, :, g))) + &
+                     self%elastic_part*points%stiffness(g)*self%points%materials(own)%elasticity]
                end associate
             end do
          end associate
@@ -676,8 +673,7 @@ contains
       type(model_type), intent(in) :: model
       type(reduced_bodies_type), intent(in) :: bodies
       type(solution_state_type), intent(in) :: next
-      real(dp) :: scale(size(self%values))
-      real(dp) :: heat, force, least(2)
+      real(dp) :: scale(size(self%values)), heat, force, least(2)
 
       least = rounding/settled*largest_terms(self, model, bodies, next)
       associate (n => size(next%temperature))

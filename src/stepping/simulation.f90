@@ -18,7 +18,6 @@ module simulation
    use point_histories, only: history_count
    use model, only: model_type
    use operator_corrections, only: corrections_type
-   use point_fields, only: point_fields_type
    use reduced_bodies, only: reduced_bodies_type
    use run_sizes, only: measure_factors, measure_steps, run_seconds_type, run_size_type
    use solution_state, only: solution_state_type
@@ -27,9 +26,18 @@ module simulation
    use stiffness_matrix, only: assemble_initial_force
    implicit none
    private
-   public :: simulation_type, make_initial_state
+   public :: simulation_type, point_fields_type, make_initial_state
 
    integer, parameter :: kept_reductions = 3     !! of heat, by films and increment sizes
+
+   !> What the integration points of all elements have in a state, for the energies of bodies.
+   type :: point_fields_type
+      real(dp) :: energies(3) = 0.0_dp         !! stored, dissipated by plasticity and by creep
+      real(dp), allocatable :: volume(:)       !! (points) that each stands for [length^3]
+      real(dp), allocatable :: stress(:, :)    !! (4, points) [stress]
+      real(dp), allocatable :: elastic(:, :)   !! (4, points) strain by the stress
+      real(dp), allocatable :: free(:, :)      !! (4, points) strain by the temperature
+   end type point_fields_type
 
    !> A run: the reduced bodies, the loads and the state, moved on by advance of increments.
    type :: simulation_type
@@ -146,8 +154,7 @@ contains
             .not. (allocated(heat%solver) .or. heat%schur%is_sparse()))) then
             clock = self%control%next_instant(model)
             call self%loads%move_to(clock, model)
-            equation = heat_equation_type(model%steps(self%control%step)%scheme, &
-               self%state%sources)
+            equation = heat_equation_type(model%steps(self%control%step)%scheme, self%state%sources)
             equation%new%film = self%loads%film_matrix()
             associate (step => model%steps(self%control%step))
                if (step%is_transient) equation%duration = equation%scheme%a(1)* &
@@ -158,8 +165,7 @@ contains
          call heat%renumber_both(bodies)
          ! Both fields are eliminated while neither has factors, for their memory. Where a matrix is
          ! singular the factors fail, too, and say better why.
-         if (solves_mechanics(analysis)) call bodies%equilibrium%renumber( &
-            bodies%mechanical)
+         if (solves_mechanics(analysis)) call bodies%equilibrium%renumber(bodies%mechanical)
          if (solves_heat(analysis)) call heat%eliminate(model, bodies, film, error)
          if (allocated(error)) then
             if (error%status == status_internal) return
@@ -273,8 +279,7 @@ contains
          state%smallest_gap = contact%gap
          allocate (state%resting(m), state%idle(m), source=.false.)
          state%jump = bodies%points%jumps(model%initial_temperature)
-         state%omega = law_conductance(bodies, model%initial_temperature, state%jump, &
-            contact)
+         state%omega = law_conductance(bodies, model%initial_temperature, state%jump, contact)
          state%omega_before = state%omega
          state%flux_conductance = state%omega
          allocate (state%displacement(2*n), state%sources%load(n), source=0.0_dp)

@@ -70,8 +70,8 @@ contains
          abs(at_end) > nearer*self%first(2)
       if (ends_behind) return
       if (self%tries > 1) then
-   ! It takes the place of the end of its kind; the other one, if it stays a second time, counts
-         ! half.
+         ! It takes the place of the end of its kind; the other one counts half if it stays a second
+         ! time.
          i = merge(2, 1, passes)
          self%times(i) = times(2)
          self%distances(i) = at_end

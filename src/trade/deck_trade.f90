@@ -149,8 +149,7 @@ contains
       if (allocated(trade%ended_early)) return
       i = findloc(trade%rows%is_default, .true., dim=1)
       status = trade%rows(i)%status
-      if (status /= 0) call print_error(path, 'the deck as written fails: '// &
-         trade%rows(i)%reason)
+      if (status /= 0) call print_error(path, 'the deck as written fails: '//trade%rows(i)%reason)
    end subroutine trade_deck
 
    !> Runs the grid level by level, then meshes with ever more levels at the contact faces, both as
@@ -230,10 +229,9 @@ contains
       integer :: coarser, local
 
       local = merge(1, 0, mesh%contact_levels > 0)
-      coarser = findloc(rows%variation%order == mesh%order .and. &
-         rows%variation%contact_levels == mesh%contact_levels - local .and. &
-         rows%variation%levels == mesh%levels - (1 - local) .and. &
-         abs(rows%variation%increments - mesh%increments) <= 0.0_dp, .true., dim=1)
+      coarser = findloc(rows%variation%order == mesh%order .and. rows%variation%contact_levels == &
+         mesh%contact_levels - local .and. rows%variation%levels == mesh%levels - (1 - local) &
+         .and. abs(rows%variation%increments - mesh%increments) <= 0.0_dp, .true., dim=1)
       expected_seconds = merge(0.0_dp, unknown, mesh%levels + mesh%contact_levels == 0)
       if (coarser > 0) expected_seconds = growth*rows(coarser)%cpu_seconds
    end function expected_seconds
@@ -400,9 +398,8 @@ contains
       call simulation%bodies%views(interfaces)
       allocate (values(0))
       do i = 1, size(interfaces)
-         values = [values, (contact_values(traded(q)%name, record%contacts(i)), &
-            q=1, figure_count), &
-            closed_length(interfaces(i), record%contacts(i))]
+         values = [values, (contact_values(traded(q)%name, record%contacts(i)), q=1, &
+            figure_count), closed_length(interfaces(i), record%contacts(i))]
       end do
       if (size(interfaces) == 0) values = [(merge(record%heat_in, absent, &
          traded(q)%name == 'heat_rate'), q=1, figure_count), 0.0_dp]

@@ -62,9 +62,8 @@ contains
          limit%uncertainty = merge(safety_of_three, safety, n == 3)* &
             maxval([(abs(values(k) - values(n))/(2.0_dp**(n - k) - 1.0_dp), k=1, n - 1)])
          associate (before => differences(n - 2), last => differences(n - 1))
-            if (.not. is_position .and. (before > 0.0_dp .eqv. last > 0.0_dp) .and. &
-               abs(before) < slowest*abs(last)) limit%uncertainty = max(limit%uncertainty, &
-               drift*abs(last))
+            if (.not. is_position .and. (before > 0.0_dp .eqv. last > 0.0_dp) .and. abs(before) < &
+               slowest*abs(last)) limit%uncertainty = max(limit%uncertainty, drift*abs(last))
          end associate
       end if
    end function extrapolate

@@ -102,8 +102,7 @@ contains
    !> the targets before it, in all quantities in which some row does.
    pure subroutine judge_rows(trade)
       type(trade_type), intent(inout) :: trade   !! with the errors of its rows
-      logical :: meets(size(trade%rows)), is_known(quantity_count), &
-         is_reachable(quantity_count)
+      logical :: meets(size(trade%rows)), is_known(quantity_count), is_reachable(quantity_count)
       real(dp) :: least(quantity_count)
       character(:), allocatable :: words
       integer :: k, q, i
@@ -145,9 +144,8 @@ contains
       logical :: optimal(size(costs))         !! (n) whether none beats it
       integer :: i
 
-      optimal = count .and. [(.not. any(count .and. ( &
-         costs <= costs(i) + same_time .and. errors < errors(i) .or. &
-         costs < costs(i) - same_time .and. errors <= errors(i))), i=1, size(costs))]
+      optimal = count .and. [(.not. any(count .and. (costs <= costs(i) + same_time .and. errors < &
+         errors(i) .or. costs < costs(i) - same_time .and. errors <= errors(i))), i=1, size(costs))]
    end function are_optimal
 
    !> The cheapest of some rows; of those that cost the same the most accurate one, of these the

@@ -172,9 +172,8 @@ contains
       character(:), allocatable :: text
       integer :: i, k
 
-      write (line, '(*(a))') columns_of_row, (',error_'//trim(traded(i)%name), &
-         i=1, quantity_count), &
-         ',error_worst,pareto,recommended_10,recommended_1,recommended_0.1'
+      write (line, '(*(a))') columns_of_row, (',error_'//trim(traded(i)%name), i=1, &
+         quantity_count), ',error_worst,pareto,recommended_10,recommended_1,recommended_0.1'
       text = trim(line)//new_line('a')
       do i = 1, size(trade%rows)
          associate (row => trade%rows(i), mesh => trade%rows(i)%variation)

@@ -1,6 +1,6 @@
 !> *SPRING, and *SOLID SECTION of trusses -> springs and trusses.
 module deck_builder_bars
-   use bars, only: bar_type
+   use model, only: bar_type
    use card_values, only: read_field, read_row
    use deck_context, only: deck_type
    use deck_structure, only: cards_of

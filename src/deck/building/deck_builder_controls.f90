@@ -12,11 +12,10 @@ module deck_builder_controls
    use materials, only: melts
    use steps, only: step_controls_type
    use print_requests, only: print_ceeq, print_creep, print_displacement, print_force, print_heat, &
-      print_heat_flux, print_peeq, print_plastic, print_position, print_request_type, &
-      print_solid, print_stress, print_temperature
+      print_heat_flux, print_peeq, print_plastic, print_position, print_request_type, print_solid, &
+      print_stress, print_temperature, time_points_type
    use spelling, only: known_choices
    use text, only: split_words, string_type, to_text, to_upper
-   use time_points, only: time_points_type
    implicit none
    private
    public :: build_continuation, build_fixed_point, build_restart, build_thermal_scheme, &

@@ -5,8 +5,7 @@ module deck_builder_options
    use deck_builder_rigid, only: need_faces
    use deck_context, only: deck_type
    use element_kinds, only: axisymmetric, plane_strain, plane_stress
-   use model, only: uncertainty_named, uncertainty_words
-   use refined_regions, only: refined_region_type
+   use model, only: refined_region_type, uncertainty_named, uncertainty_words
    use steps, only: dof_temperature
    use text, only: read_integer, to_text, to_upper
    use transforms, only: axis_in_plane

@@ -16,7 +16,7 @@ module deck_builder_steps
       cycle_type, increment_growth, least_increment, planned_increments, solves_heat, &
       solves_mechanics, step_controls_type, step_type, until_displacement, until_force, until_strain
    use text, only: percent, to_text
-   use time_points, only: time_points_type
+   use print_requests, only: time_points_type
    implicit none
    private
    public :: build_steps, increment_rounding

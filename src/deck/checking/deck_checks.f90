@@ -13,11 +13,10 @@ module deck_checks
    use load_requests, only: request_list_type
    use materials, only: of_conductivity, of_elasticity
    use mesh_checks, only: check_jacobians, check_planes, check_sides, check_slenderness
-   use model, only: model_type
+   use model, only: model_type, needs_full_tail
    use refinement, only: numbering_fault
    use step_checks, only: check_sliding
    use steps, only: solves_heat, solves_mechanics
-   use tail_choice, only: needs_full_tail
    use text, only: to_text, to_upper
    implicit none
    private

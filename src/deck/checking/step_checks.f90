@@ -2,7 +2,7 @@
 !> of those of which a branch is followed, that it is one of steady states whose loads are
 !> proportional to the load factor; of pairs with SLIDING=FINITE, what these do not go with.
 module step_checks
-   use card_places, only: place_type
+   use errors, only: place_type
    use contact_definitions, only: contact_definition_type
    use deck_context, only: deck_type
    use deck_source, only: place_type

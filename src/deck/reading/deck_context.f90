@@ -16,7 +16,7 @@ module deck_context
    use sorting, only: number_index_type
    use spelling, only: known_choices, nearest_known
    use text, only: read_integer, string_type, to_upper
-   use time_points, only: time_points_type
+   use print_requests, only: time_points_type
    implicit none
    private
    public :: deck_type, item_index_type, place_list_type, plane_by_element

@@ -1,7 +1,7 @@
 !> The lines of a deck as they are in its files: the deck itself, and those that it includes; and as
 !> messages show them, with a caret under the place that is meant.
 module deck_source
-   use card_places, only: place_type
+   use errors, only: place_type
    use file_calls, only: read_file
    use messages, only: print_line
    use text, only: string_type, to_text
