@@ -91,7 +91,9 @@ contains
    pure subroutine apply_variation(variation, model)
       type(variation_type), intent(in) :: variation   !! what is other
       type(model_type), intent(inout) :: model        !! as the deck builder made it
-      integer :: s
+      logical, allocatable :: lands(:)
+      real(dp), allocatable :: ends(:)                ! of the steps, total times
+      integer :: i, s
 
       if (variation%solver /= as_written) model%solver = variation%solver
       if (variation%pairing /= as_written) model%contacts%pairing = variation%pairing
@@ -113,20 +115,30 @@ contains
          deallocate (model%verifications)
          allocate (model%verifications(0))
       else if (any(model%steps%direct) .and. abs(variation%increments - 1.0_dp) > 0.0_dp) then
-         call keep_landings(model)
+         ends = [(sum(model%steps(:s)%period), s=1, size(model%steps))]
+         allocate (lands(size(model%verifications)))
+         do i = 1, size(lands)
+            associate (check => model%verifications(i))
+               lands(i) = .not. check%at_last
+               if (lands(i)) lands(i) = .not. model%steps(min(1 + count(check%when > ends), &
+                  size(ends)))%direct
+            end associate
+         end do
+         model%verifications = model%verifications(pack([(i, i=1, size(lands))], lands))
       end if
    end subroutine apply_variation
 
    !> Divides the elements of a mesh: all of them, then those of each region of the deck and at the
-   !> contact faces, then those that the variation marks.
+   !> contact faces, then those that the variation marks, as often as it does, and those at points,
+   !> each time those that are left there.
    !> Errors: as divide_once.
    subroutine divide_mesh(variation, model, error)
       type(variation_type), intent(in) :: variation
       type(model_type), intent(inout) :: model
       type(error_type), allocatable, intent(out) :: error
       type(refined_region_type), allocatable :: regions(:)
-      integer, allocatable :: levels(:)
-      integer :: i, level
+      integer, allocatable :: chosen(:), levels(:)
+      integer :: i, k, level
 
       level = merge(model%written_levels, variation%levels, variation%levels == as_written)
       model%memory_needed = memory_needed(model, level, order_of(model, variation))
@@ -145,34 +157,21 @@ contains
       end do
       if (.not. allocated(variation%divisions)) return
       do i = 1, size(variation%divisions)
-         call divide_marked(variation, variation%divisions(i), model, error)
-         if (allocated(error)) return
+         associate (marked => variation%divisions(i))
+            levels = marked%levels
+            do while (any(levels > 0))
+               call divide_once(variation, 0, model, levels, error)
+               if (allocated(error)) return
+            end do
+            do level = 1, maxval(marked%point_levels)
+               chosen = pack([(k, k=1, size(marked%point_levels))], marked%point_levels >= level)
+               levels = merge(1, 0, elements_at_points(model%mesh, marked%points(:, chosen)))
+               call divide_once(variation, 0, model, levels, error)
+               if (allocated(error)) return
+            end do
+         end associate
       end do
    end subroutine divide_mesh
-
-   !> Divides elements as often as they are marked, then those at points, each time those that are
-   !> left there.
-   !> Errors: as divide_once.
-   subroutine divide_marked(variation, marked, model, error)
-      type(variation_type), intent(in) :: variation
-      type(marked_elements_type), intent(in) :: marked
-      type(model_type), intent(inout) :: model
-      type(error_type), allocatable, intent(out) :: error
-      integer, allocatable :: levels(:), chosen(:)
-      integer :: i, level
-
-      levels = marked%levels
-      do while (any(levels > 0))
-         call divide_once(variation, 0, model, levels, error)
-         if (allocated(error)) return
-      end do
-      do level = 1, maxval(marked%point_levels)
-         chosen = pack([(i, i=1, size(marked%point_levels))], marked%point_levels >= level)
-         levels = merge(1, 0, elements_at_points(model%mesh, marked%points(:, chosen)))
-         call divide_once(variation, 0, model, levels, error)
-         if (allocated(error)) return
-      end do
-   end subroutine divide_marked
 
    !> Divides the elements with levels above 0, and those that must be divided with them.
    !> Errors: status_deck, where the mesh would have more elements than can be numbered; as
@@ -271,23 +270,5 @@ contains
 
       increment = min(first*factor, period)
    end function varied_increment
-
-   !> Leaves the *VERIFY cards of steps with fixed increments out.
-   pure subroutine keep_landings(model)
-      type(model_type), intent(inout) :: model
-      logical :: lands(size(model%verifications))
-      real(dp) :: ends(size(model%steps))   ! total times
-      integer :: i
-
-      ends = [(sum(model%steps(:i)%period), i=1, size(ends))]
-      do i = 1, size(lands)
-         associate (check => model%verifications(i))
-            lands(i) = .not. check%at_last
-            if (lands(i)) lands(i) = .not. model%steps(min(1 + count(check%when > ends), &
-               size(ends)))%direct
-         end associate
-      end do
-      model%verifications = model%verifications(pack([(i, i=1, size(lands))], lands))
-   end subroutine keep_landings
 
 end module variations

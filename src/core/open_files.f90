@@ -6,8 +6,8 @@ module open_files
    use file_calls, only: cannot_write, check_written, create_working_file, remove_file, rename_file
    implicit none
    private
-   public :: open_new_file, replace_file, lock_file, unlock_file, write_to_file, empty_file, &
-      close_descriptor
+   public :: open_new_file, replace_file, write_file, lock_file, unlock_file, write_to_file, &
+      empty_file, close_descriptor
 
    integer(c_int), parameter :: locked_by_another = -1_c_int   !! as in file_calls.c
    integer(c_int), parameter :: not_lockable = -2_c_int        !! alike

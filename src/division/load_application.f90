@@ -33,7 +33,7 @@ contains
       type(model_type), intent(inout) :: model
       type(parts_type) :: parts
       type(equation_type), allocatable :: own(:)
-      integer :: s
+      integer :: owner(1, size(model%mesh%element_kind)), s
 
       call apply_temperatures(model)
       model%equations = model%equations(:model%deck_equations)
@@ -42,7 +42,9 @@ contains
          own = coupling_equations(model%couplings(s), model%mesh)
          model%equations = [model%equations, own]
       end do
-      parts = parts_of(model%mesh)
+      owner(1, :) = [(s, s=1, size(owner))]
+      if (allocated(model%mesh%deck_element)) owner(1, :) = model%mesh%deck_element
+      call invert_lists(owner, spread(1, 1, size(owner)), maxval(owner), parts%start, parts%element)
       do s = 1, size(model%steps)
          call apply_loads(parts, s, model)
          call apply_supports(s, model)
@@ -82,16 +84,6 @@ contains
       deck_node_count = size(mesh%node_number)
       if (allocated(mesh%deck_element)) deck_node_count = mesh%deck_nodes
    end function deck_node_count
-
-   pure function parts_of(mesh) result(parts)
-      type(mesh_type), intent(in) :: mesh
-      type(parts_type) :: parts
-      integer :: owner(1, size(mesh%element_kind)), e
-
-      owner(1, :) = [(e, e=1, size(owner))]
-      if (allocated(mesh%deck_element)) owner(1, :) = mesh%deck_element
-      call invert_lists(owner, spread(1, 1, size(owner)), maxval(owner), parts%start, parts%element)
-   end function parts_of
 
    !> Nodes or elements that a load of a request acts on.
    pure function targets_of(request, parts, mesh) result(items)

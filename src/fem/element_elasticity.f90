@@ -206,38 +206,29 @@ contains
       integer, intent(out) :: element(2)            !! indexes of the elements that have them
       type(point_rule_type) :: rules(kind_count)
       real(dp) :: there(2)
-      integer :: e
+      integer :: e, q
 
       rules = recovery_rules()
       largest = -1.0_dp
       element = 0
       do e = 1, size(mesh%element_kind)
          there = element_deformation(mesh, e, displacement, rules(mesh%element_kind(e)))
-         if (mesh%element_plane(e) == generalized_strain) there(of_strain) = max(there(of_strain), &
-            largest_along_z(mesh, e, sections(mesh%element_section(e)), displacement))
+         if (mesh%element_plane(e) == generalized_strain) then
+            associate (own => sections(mesh%element_section(e)))
+               do q = 1, element_node_count(mesh%element_kind(e))   ! where eps_zz is largest
+                  there(of_strain) = max(there(of_strain), abs(dot_product(strain_along_z( &
+                     mesh%coordinates(:, mesh%element_nodes(q, e)) - mesh%coordinates(:, &
+                     own%reference(1)), own%thickness), [displacement(:, own%reference(1)), &
+                     displacement(1, own%reference(2))])))
+               end do
+            end associate
+         end if
          where (there > largest)
             largest = there
             element = e
          end where
       end do
    end subroutine largest_deformation
-
-   !> Largest magnitude of eps_zz in generalized plane strain, which is at a node.
-   pure real(dp) function largest_along_z(mesh, e, section, displacement) result(largest)
-      type(mesh_type), intent(in) :: mesh
-      integer, intent(in) :: e
-      type(section_type), intent(in) :: section
-      real(dp), intent(in) :: displacement(:, :)
-      integer :: q
-
-      largest = 0.0_dp
-      do q = 1, element_node_count(mesh%element_kind(e))
-         largest = max(largest, abs(dot_product(strain_along_z(mesh%coordinates(:, &
-            mesh%element_nodes(q, e)) - mesh%coordinates(:, section%reference(1)), &
-            section%thickness), [displacement(:, section%reference(1)), &
-            displacement(1, section%reference(2))])))
-      end do
-   end function largest_along_z
 
    pure function element_deformation(mesh, e, displacement, rule) result(largest)
       type(mesh_type), intent(in) :: mesh

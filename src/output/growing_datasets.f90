@@ -193,7 +193,7 @@ contains
    subroutine flush_rows(self, file)
       class(growing_dataset_type), target, intent(inout) :: self
       type(hdf5_writer_type), intent(inout) :: file              !! the open file
-      integer(hsize_t) :: offset(2), extent(2), whole(2)
+      integer(hsize_t) :: chunk(2), largest(2), offset(2), extent(2), whole(2)
       integer(hid_t) :: dataset, memory, space
       integer :: rank, status(9)
 
@@ -205,7 +205,14 @@ contains
       offset = [0_hsize_t, self%rows_in_file]
       whole = [extent(1), offset(2) + extent(2)]
       if (.not. self%in_file) then
-         call create(self, file, whole, dataset, status(1))
+         chunk = [whole(1), self%chunk_rows]
+         largest = [whole(1), h5s_unlimited_f]
+         call h5pset_chunk_f(file%creation, rank, chunk(3 - rank:), status(1))
+         call h5screate_simple_f(rank, whole(3 - rank:), space, status(2), largest(3 - rank:))
+         call h5dcreate_f(file%id, self%path, stored_type(self%storage), space, dataset, &
+            status(3), file%creation)
+         call h5sclose_f(space, status(4))
+         status(1) = minval(status(:4))
       else
          call h5dopen_f(file%id, self%path, dataset, status(1))
          call h5dset_extent_f(dataset, whole(3 - rank:), status(2))
@@ -230,26 +237,5 @@ contains
       self%rows_in_file = whole(2)
       self%used = 0
    end subroutine flush_rows
-
-   subroutine create(self, file, whole, dataset, status)
-      class(growing_dataset_type), intent(in) :: self
-      type(hdf5_writer_type), intent(in) :: file
-      integer(hsize_t), intent(in) :: whole(2)
-      integer(hid_t), intent(out) :: dataset
-      integer, intent(out) :: status
-      integer(hsize_t) :: chunk(2), largest(2)
-      integer(hid_t) :: space
-      integer :: results(4), rank
-
-      rank = merge(1, 2, self%width == 0)
-      chunk = [whole(1), self%chunk_rows]
-      largest = [whole(1), h5s_unlimited_f]
-      call h5pset_chunk_f(file%creation, rank, chunk(3 - rank:), results(1))
-      call h5screate_simple_f(rank, whole(3 - rank:), space, results(2), largest(3 - rank:))
-      call h5dcreate_f(file%id, self%path, stored_type(self%storage), space, dataset, results(3), &
-         file%creation)
-      call h5sclose_f(space, results(4))
-      status = minval(results)
-   end subroutine create
 
 end module growing_datasets

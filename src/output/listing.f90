@@ -15,15 +15,12 @@ module listing
    use listing_tables, only: print_contact_table, print_iterations, print_requested, &
       print_verdicts, uncertainties_of
    use listing_text, only: page_type, page_width, to_right
-   use materials, only: follows_temperature
-   use mesh_bodies, only: body_name
    use model, only: follows_temperatures, model_type
    use model_words, only: has_many
    use no_estimates, only: no_reason, reason_of_run
    use open_files, only: empty_file, lock_file, unlock_file, write_to_file
    use records, only: increment_record_type
    use requested_tables, only: requested_table_type
-   use run_sizes, only: run_size_type
    use run_summaries, only: in_times, run_entries, run_entry_type, run_summary_type
    use summary, only: summary_type
    use text, only: append, counted, or_blank, string_type, to_text, with_decimals
@@ -158,7 +155,16 @@ contains
       end do
       call print_balances(self%page, record, model)
       call print_body_errors(self%page, record)
-      call print_warnings(self, record)
+      if (allocated(record%notes)) then
+         do i = 1, size(record%notes)
+            call self%page%wrapped('   ', 'note: '//record%notes(i)%value)
+         end do
+      end if
+      if (allocated(record%warnings)) then
+         do i = 1, size(record%warnings)
+            call self%page%wrapped('   ', 'warning: '//record%warnings(i)%words())
+         end do
+      end if
       if (allocated(record%uncertainties) .and. reason_of_run(model) == no_reason) then
          do i = 1, size(interfaces)
             call print_uncertainties(self%page, interfaces(i), record%uncertainties(:, i))
@@ -277,7 +283,6 @@ contains
             counted(run%sizes%heat_factored, 'time')//' in '// &
             counted(self%summary%last%increment, 'increment')//'.')
       end if
-      if (follows_temperatures(model)) call print_bodies(self%page, model, run%sizes)
       call self%page%deck(cards)
       call write_text(self, error)
       if (allocated(error)) return
@@ -328,23 +333,6 @@ contains
       call page%wrapped('heading   ', or_blank(model%heading))
    end subroutine print_heading
 
-   !> Prints the warnings of an increment and keeps them for the end.
-   subroutine print_warnings(self, record)
-      class(listing_type), intent(inout) :: self
-      type(increment_record_type), intent(in) :: record
-      integer :: i
-
-      if (allocated(record%notes)) then
-         do i = 1, size(record%notes)
-            call self%page%wrapped('   ', 'note: '//record%notes(i)%value)
-         end do
-      end if
-      if (.not. allocated(record%warnings)) return
-      do i = 1, size(record%warnings)
-         call self%page%wrapped('   ', 'warning: '//record%warnings(i)%words())
-      end do
-   end subroutine print_warnings
-
    !> Prints the contact points of each interface that never came nearer than they were.
    subroutine print_unapproached(page, node_number, interfaces, summary)
       type(page_type), intent(inout) :: page
@@ -374,24 +362,5 @@ contains
          call page%wrapped('   ', line)
       end do
    end subroutine print_unapproached
-
-   !> How bodies whose properties may follow temperatures were solved.
-   subroutine print_bodies(page, model, sizes)
-      type(page_type), intent(inout) :: page
-      type(model_type), intent(in) :: model
-      type(run_size_type), intent(in) :: sizes
-      integer :: b
-
-      call page%line('   The stiffness was factored '//counted(sizes%stiffness_factored, 'time')// &
-         '; '//counted(sizes%corrections, 'correction')//' in all, at most '// &
-         to_text(sizes%most_corrections)//' in an increment.')
-      do b = 1, model%mesh%body_count
-         call page%line('   '//body_name(model, b)//trim(merge( &
-            ': properties over temperature, corrected by true heat and stress', &
-            ': constant properties, no corrections of its own                ', &
-            any(follows_temperature(model%materials(model%sections(pack( &
-            model%mesh%element_section, model%mesh%element_body == b))%material))))))
-      end do
-   end subroutine print_bodies
 
 end module listing

@@ -95,7 +95,9 @@ contains
       type(contact_points_type), intent(in) :: interfaces(:) !! contact points of every interface
       type(run_summary_type), intent(in) :: run
       type(run_entry_type), allocatable :: entries(:)
-      integer :: i
+      type(page_type) :: blocks(size(interfaces))
+      type(string_type) :: texts(size(interfaces))
+      integer :: first(size(interfaces)), i
 
       call page%title('PHYSICS')
       call page%wrapped('   ', or_blank(run%modelled))
@@ -106,17 +108,6 @@ contains
          if (entries(i)%is_told(in_listing)) call print_entry(page, entries(i)%label, &
             entries(i)%words)
       end do
-      call print_interfaces(page, model, interfaces)
-   end subroutine print_model
-
-   subroutine print_interfaces(page, model, interfaces)
-      type(page_type), intent(inout) :: page
-      type(model_type), intent(in) :: model
-      type(contact_points_type), intent(in) :: interfaces(:)
-      type(page_type) :: blocks(size(interfaces))
-      type(string_type) :: texts(size(interfaces))
-      integer :: first(size(interfaces)), i
-
       do i = 1, size(interfaces)
          call print_interface(blocks(i), model, interfaces(i), i)
          call blocks(i)%take(texts(i)%value)
@@ -128,7 +119,7 @@ contains
          call page%line('   INTERFACE '//interfaces(i)%name//alike_words(first, i))
          call page%append(texts(i)%value)
       end do
-   end subroutine print_interfaces
+   end subroutine print_model
 
    subroutine print_interface(page, model, points, i)
       type(page_type), intent(inout) :: page

@@ -254,11 +254,19 @@ contains
       type(uncertainty_type), intent(in) :: errors(:)      !! (estimated)
       character(longest_name) :: names(size(estimated))
       integer :: q
+      logical :: is_told
 
       do q = 1, size(estimated)
          names(q) = ''
-         if (is_worth_telling(q, errors(q)%value, errors(q)%total) .and. .not. is_end_of_face( &
-            estimated(q), points, errors(q)%value)) names(q) = words_of(estimated(q)%name)
+         associate (own => errors(q))
+            if (ieee_is_nan(own%value)) cycle
+            if (is_end_of_face(estimated(q), points, own%value)) cycle
+            ! That of friction is 0 without it.
+            is_told = abs(own%value) > 0.0_dp
+            if (.not. (is_told .or. estimated(q)%is_of_friction .or. ieee_is_nan(own%total))) &
+               is_told = own%total > 0.0_dp
+            if (is_told) names(q) = words_of(estimated(q)%name)
+         end associate
       end do
       call print_table(page, points%name, names(:)(:maxval([(len(words_of(estimated(q)%name)), &
          q=1, size(estimated))])), errors)
@@ -327,18 +335,6 @@ contains
          end associate
       end do
    end subroutine print_table
-
-   !> Whether a quantity has a value and a part in the deck; that of friction is 0 without it.
-   pure logical function is_worth_telling(q, value, total)
-      integer, intent(in) :: q
-      real(dp), intent(in) :: value, total
-
-      is_worth_telling = .not. ieee_is_nan(value)
-      if (.not. is_worth_telling) return
-      is_worth_telling = abs(value) > 0.0_dp
-      if (is_worth_telling .or. estimated(q)%is_of_friction .or. ieee_is_nan(total)) return
-      is_worth_telling = total > 0.0_dp
-   end function is_worth_telling
 
    !> A number in a column, or a word set to the right where there is none.
    pure function cell(value, width, missing) result(string)

@@ -70,7 +70,8 @@ contains
                increment = 0.0_dp
             else
                slope = (values(i) - before)/(time - then)
-               if (ieee_is_nan(reached) .and. passes(before, values(i), self%level)) then
+               if (ieee_is_nan(reached) .and. ((before < self%level .neqv. &
+                  values(i) < self%level) .or. abs(values(i) - self%level) <= 0.0_dp)) then
                   reached = time
                   if (abs(values(i) - self%level) > 0.0_dp) reached = then + &
                      (self%level - before)/(values(i) - before)*(time - then)
@@ -87,13 +88,6 @@ contains
          end associate
       end do
    end subroutine take
-
-   !> Whether a value comes to a level or passes it.
-   pure logical function passes(before, now, level)
-      real(dp), intent(in) :: before, now, level
-
-      passes = (before < level .neqv. now < level) .or. abs(now - level) <= 0.0_dp
-   end function passes
 
    !> When the values reached it.
    pure subroutine times(self, values, uncertainty, reason)

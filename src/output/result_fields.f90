@@ -110,45 +110,37 @@ contains
       integer, intent(in) :: point_node(:)               !! (points) node index of each point
       logical, intent(in) :: has(0:)                     !! what the deck solves, by needs_*
       integer, intent(in) :: expected                    !! increments that are expected
-      type(quantity_type), allocatable :: fields(:)
+      type(quantity_type), allocatable :: fields(:), of_faces(:)
+      integer :: i
 
       self%point_node = point_node
       self%is_used = model%mesh%node_body(point_node) > 0
-      if (all(model%mesh%element_plane /= axisymmetric)) self%radial = &
-         directions(model%mesh%coordinates(:, point_node))
+      if (all(model%mesh%element_plane /= axisymmetric)) then
+         ! At the origin itself along x.
+         self%radial = model%mesh%coordinates(:, point_node)
+         do i = 1, size(point_node)
+            associate (radius => hypot(self%radial(1, i), self%radial(2, i)))
+               self%radial(:, i) = merge(self%radial(:, i)/max(radius, tiny(radius)), &
+                  [1.0_dp, 0.0_dp], radius > 0.0_dp)
+            end associate
+         end do
+      end if
       call find_faces(self, interfaces)
       fields = datasets(of_points, has)
-      if (size(interfaces) > 0) fields = [fields, on_faces(datasets(of_contact_points, has))]
+      if (size(interfaces) > 0) then
+         ! Some quantities of contact points are fields too, by names of their own; NaN is real.
+         of_faces = datasets(of_contact_points, has)
+         of_faces = pack(of_faces, of_faces%is_on_faces)
+         of_faces%is_integer = .false.
+         do i = 1, size(of_faces)
+            of_faces(i)%name = mark//trim(of_faces(i)%name)
+            of_faces(i)%description = trim(of_faces(i)%description)//'; on both faces, else NaN'
+         end do
+         fields = [fields, of_faces]
+      end if
       call self%start_grid(fields, datasets(of_elements, has), size(point_node), &
          size(model%mesh%element_kind), expected)
    end subroutine start
-
-   !> Unit vectors from the origin to points; along x at the origin itself.
-   pure function directions(coordinates) result(radial)
-      real(dp), intent(in) :: coordinates(:, :)
-      real(dp) :: radial(2, size(coordinates, 2)), radius
-      integer :: i
-
-      do i = 1, size(radial, 2)
-         radius = hypot(coordinates(1, i), coordinates(2, i))
-         radial(:, i) = [1.0_dp, 0.0_dp]
-         if (radius > 0.0_dp) radial(:, i) = coordinates(:, i)/radius
-      end do
-   end function directions
-
-   !> The quantities of contact points that are fields too, by their names as such.
-   pure function on_faces(of_interface) result(fields)
-      type(quantity_type), intent(in) :: of_interface(:)
-      type(quantity_type), allocatable :: fields(:)
-      integer :: i
-
-      fields = pack(of_interface, of_interface%is_on_faces)
-      fields%is_integer = .false.   ! NaN is real
-      do i = 1, size(fields)
-         fields(i)%name = mark//trim(fields(i)%name)
-         fields(i)%description = trim(fields(i)%description)//'; on both faces, else NaN'
-      end do
-   end function on_faces
 
    subroutine find_faces(self, interfaces)
       class(field_results_type), intent(inout) :: self

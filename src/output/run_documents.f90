@@ -47,7 +47,17 @@ contains
          stability = stability_words(summary%last, or_blank(model%units%time))
          if (stability /= '') call document%put(stability, 'stability')
          has_leading = leading_words(summary%last, '') /= ''
-         if (has_leading) call put_leading(document, summary%last%stability%leading)
+         if (has_leading) then
+            call document%open('[', 'leading_modes')
+            do i = 1, size(summary%last%stability%leading, 2)
+               call document%open('{')
+               call document%put(summary%last%stability%leading(1, i), 'growth_rate')
+               call document%put(summary%last%stability%leading(2, i), 'period')
+               call document%put(words_of_reason(no_finer_value), 'no_estimate')
+               call document%close('}')
+            end do
+            call document%close(']')
+         end if
          call document%open('{', 'interfaces')
          do i = 1, size(interfaces)
             call put_interface(document, row, summary, model, interfaces(i), i)
@@ -65,23 +75,6 @@ contains
       end if
       call document%close('}')
    end subroutine put_summary
-
-   !> Leading small motions, the fastest first.
-   subroutine put_leading(document, leading)
-      type(json_type), intent(inout) :: document
-      real(dp), intent(in) :: leading(:, :)          ! (2, motions) growth rate, period
-      integer :: i
-
-      call document%open('[', 'leading_modes')
-      do i = 1, size(leading, 2)
-         call document%open('{')
-         call document%put(leading(1, i), 'growth_rate')
-         call document%put(leading(2, i), 'period')
-         call document%put(words_of_reason(no_finer_value), 'no_estimate')
-         call document%close('}')
-      end do
-      call document%close(']')
-   end subroutine put_leading
 
    subroutine put_interface(document, row, summary, model, points, i)
       type(json_type), intent(inout) :: document
@@ -105,9 +98,7 @@ contains
             value = contact_values(quantity%name, contact)
             call open_quantity(document, quantity, value(1), model)
             call row%put(trim(quantity%name)//' '//points%name, value(1))
-            do q = size(estimated), 1, -1
-               if (estimated(q)%name == quantity%name) exit
-            end do
+            q = find_quantity(estimated, quantity%name)
             if (is_end_of_face(quantity, points, value(1))) then
                call document%put('end of the face', 'no_estimate')
             else if (q > 0 .and. allocated(summary%last%uncertainties)) then

@@ -211,24 +211,23 @@ contains
    pure function lines(self)
       class(warning_summary_type), intent(in) :: self
       type(string_type), allocatable :: lines(:)
+      character(:), allocatable :: words
       integer :: k
 
       allocate (lines(0))
       if (.not. allocated(self%kinds)) return
       do k = 1, size(self%kinds)
-         call append(lines, when(self%kinds(k))//': '//self%kinds(k)%worst%words())
+         associate (kind => self%kinds(k))
+            words = 'increment '//to_text(kind%first)
+            if (kind%last > kind%first) then
+               words = 'increments '//to_text(kind%first)//' to '//to_text(kind%last)
+               if (kind%count <= kind%last - kind%first) words = to_text(kind%count)//' of the '// &
+                  words
+               if (kind%worst%has_value) words = words//', worst at '//to_text(kind%at)
+            end if
+            call append(lines, words//': '//kind%worst%words())
+         end associate
       end do
    end function lines
-
-   pure function when(kind) result(words)
-      type(kind_type), intent(in) :: kind
-      character(:), allocatable :: words
-
-      words = 'increment '//to_text(kind%first)
-      if (kind%last == kind%first) return
-      words = 'increments '//to_text(kind%first)//' to '//to_text(kind%last)
-      if (kind%count <= kind%last - kind%first) words = to_text(kind%count)//' of the '//words
-      if (kind%worst%has_value) words = words//', worst at '//to_text(kind%at)
-   end function when
 
 end module run_judgement

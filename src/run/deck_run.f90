@@ -163,7 +163,21 @@ contains
             self%outcome%messages = self%deck%messages
          end if
          if (.not. (allocated(error) .or. allocated(self%model%steps))) then
-            call skip(self)
+            call set_reason(self%outcome%report, self%deck%why_skipped)
+            if (.not. allocated(self%deck%finished)) return
+            ! Of a finished run the outcome is that of its result, so that the table of a batch
+            ! loses nothing; checks that failed in it fail again.
+            associate (report => self%outcome%report, finished => self%deck%finished)
+               report%increments = size(finished%iterations)
+               report%iterations = sum(finished%iterations)
+               report%verify_passed = finished%passed_checks
+               report%verify_failed = finished%failed_checks
+               report%seconds = sum(finished%seconds)
+               if (finished%failed_checks == 0) return
+               call set_error(error, status_verify, 'its result is finished, and '//counted( &
+                  finished%failed_checks, '*VERIFY check')//' failed')
+            end associate
+            call self%outcome%fail(error)
             return
          end if
          if (.not. (allocated(error) .or. is_later)) then
@@ -192,28 +206,6 @@ contains
       end associate
       call report_failure(self, error, is_told)
    end subroutine begin_round
-
-   !> Says of a file why it is not solved. Of a finished run the outcome is that of its result, so
-   !> that the table of a batch loses nothing; checks that failed in it fail again.
-   subroutine skip(self)
-      type(deck_run_type), intent(inout) :: self
-      type(error_type), allocatable :: error
-
-      call set_reason(self%outcome%report, self%deck%why_skipped)
-      if (.not. allocated(self%deck%finished)) return
-      associate (outcome => self%outcome, finished => self%deck%finished, &
-         failed => self%deck%finished%failed_checks)
-         outcome%report%increments = size(finished%iterations)
-         outcome%report%iterations = sum(finished%iterations)
-         outcome%report%verify_passed = finished%passed_checks
-         outcome%report%verify_failed = failed
-         outcome%report%seconds = sum(finished%seconds)
-         if (failed == 0) return
-         call set_error(error, status_verify, 'its result is finished, and '//counted(failed, &
-            '*VERIFY check')//' failed')
-      end associate
-      call self%outcome%fail(error)
-   end subroutine skip
 
    !> Sees to it that results can be written before anything is solved.
    !> Error: as run_output_type's reserve.

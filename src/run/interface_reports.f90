@@ -224,8 +224,10 @@ contains
       type(model_type), intent(in) :: model                !! its checks name known interfaces
       type(contact_points_type), intent(in) :: interfaces(:) !! contact points of every interface
       type(deck_report_type), intent(inout) :: report      !! receives errors
+      character(:), allocatable :: words   ! such as 'goes from 0 to 2, from 3 to 5'
+      real(dp), allocatable :: ends(:)
       real(dp) :: s
-      integer :: at, i, k
+      integer :: at, i, k, p
       logical :: valid
 
       do i = 1, size(model%verifications)
@@ -237,29 +239,18 @@ contains
             do k = 1, size(interfaces)
                if (to_upper(interfaces(k)%name) /= to_upper(trim(check%where(:at - 1)))) cycle
                if (is_on_interface(s, interfaces(k))) cycle
+               ends = interfaces(k)%arc_length(interfaces(k)%ends())
+               words = 'ends at '//to_text(ends(size(ends)))
+               if (size(ends) > 2) words = 'goes'
+               do p = 1, merge(size(ends), 0, size(ends) > 2), 2
+                  words = words//trim(merge(' ', ',', p == 1))//' from '//to_text(ends(p))// &
+                     ' to '//to_text(ends(p + 1))
+               end do
                call report%error(place_type(check%line, check%columns(2)), &
-                  'the arc length of contact pair '//interfaces(k)%name//' '//range_words( &
-                  interfaces(k)))
+                  'the arc length of contact pair '//interfaces(k)%name//' '//words)
             end do
          end associate
       end do
    end subroutine check_arc_lengths
-
-   !> Where an interface has arc lengths, such as 'goes from 0 to 2, from 3 to 5'.
-   pure function range_words(points) result(words)
-      type(contact_points_type), intent(in) :: points
-      character(:), allocatable :: words
-      real(dp), allocatable :: s(:)
-      integer :: i
-
-      s = points%arc_length(points%ends())
-      words = 'ends at '//to_text(s(size(s)))
-      if (size(s) == 2) return
-      words = 'goes'
-      do i = 1, size(s), 2
-         words = words//trim(merge(' ', ',', i == 1))//' from '//to_text(s(i))//' to '// &
-            to_text(s(i + 1))
-      end do
-   end function range_words
 
 end module interface_reports

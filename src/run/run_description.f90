@@ -170,6 +170,9 @@ contains
       type(run_summary_type) :: run
       type(error_type), allocatable :: error
       type(json_type) :: members
+      type(contact_points_type) :: points
+      real(dp) :: gaps(2)
+      integer :: i
 
       status = 0
       allocate (simulation)
@@ -184,35 +187,23 @@ contains
          if (.not. allocated(error) .and. allocated(model%steps)) then
             call describe_run(path, model, simulation, run)
             call put_run(members, run, model)
-            call put_interfaces(members, model, simulation)
+            call members%open('{', 'interfaces')
+            do i = 1, size(model%contacts)
+               call simulation%bodies%view(i, points)
+               gaps = gap_range(model%mesh, points)
+               call members%open('{', points%name)
+               call members%put(size(points%slave), 'contact_points')
+               call members%put(pairing_words(model%contacts(i)%pairing, points), 'pairing')
+               call members%put(gaps(1), 'smallest_initial_gap')
+               call members%put(gaps(2), 'largest_initial_gap')
+               call members%close('}')
+            end do
+            call members%close('}')
          end if
          call print_document('check', path, status, deck%messages, members)
       end if
       call simulation%release()
    end subroutine check_deck
-
-   !> Adds the contact points of every interface.
-   subroutine put_interfaces(document, model, simulation)
-      type(json_type), intent(inout) :: document
-      type(model_type), intent(in) :: model
-      type(simulation_type), intent(in) :: simulation
-      type(contact_points_type) :: points
-      real(dp) :: gaps(2)
-      integer :: i
-
-      call document%open('{', 'interfaces')
-      do i = 1, size(model%contacts)
-         call simulation%bodies%view(i, points)
-         gaps = gap_range(model%mesh, points)
-         call document%open('{', points%name)
-         call document%put(size(points%slave), 'contact_points')
-         call document%put(pairing_words(model%contacts(i)%pairing, points), 'pairing')
-         call document%put(gaps(1), 'smallest_initial_gap')
-         call document%put(gaps(2), 'largest_initial_gap')
-         call document%close('}')
-      end do
-      call document%close('}')
-   end subroutine put_interfaces
 
    subroutine print_deck(model, simulation, run)
       type(model_type), intent(in) :: model

@@ -121,13 +121,25 @@ contains
       type(increment_data_type), intent(in) :: data
       logical, intent(in) :: was_out                          !! whether the last increment was
       type(increment_record_type), intent(inout) :: record
-      real(dp) :: at_start
+      type(heat_rates_type) :: rates
+      real(dp) :: at_start, scale
 
       ! What a step that stores heat leaves over it stores.
       if (data%equation%duration > 0.0_dp) return
       at_start = 0.0_dp
-      if (data%equation%never_damps() .and. .not. data%kept_imbalance) at_start = &
-         start_imbalance(bodies, prescribed, data)
+      if (data%equation%never_damps() .and. .not. data%kept_imbalance) then
+         ! In any row that is not prescribed, relative to the largest rate.
+         rates = data%equation%rates_at_start(bodies%thermal%matrix)
+         scale = max(maxval(abs(rates%conducted)), maxval(abs(data%equation%old%load)), &
+            maxval([0.0_dp, abs(rates%crossing)]), noise*bodies%thermal%largest_entry* &
+            maxval(abs(data%equation%temperature_old)), tiny(1.0_dp))
+         if (allocated(data%friction%old)) then
+            rates%friction_heat = data%friction%old
+            scale = max(scale, sum(abs(rates%friction_heat)))
+         end if
+         at_start = maxval([0.0_dp, pack(abs(supplied_heat(bodies, edge_heat_type(), rates)), &
+            .not. prescribed)])/scale
+      end if
       if (at_start > equilibrium) then
          call record%warn('heat starts out of equilibrium, (K + G) T - Q is ', at_start, &
             ' of the largest rate; the scheme of (3.4), amplification '// &
@@ -140,27 +152,6 @@ contains
             '; *THERMAL SCHEME, TYPE=IMPLICIT leaves none')
       end if
    end subroutine warn_of_imbalances
-
-   !> Largest residual of (K + G) T - Q in any row that is not prescribed, at the start of an
-   !> increment, relative to the largest rate.
-   pure real(dp) function start_imbalance(bodies, prescribed, data) result(relative)
-      type(reduced_bodies_type), intent(in) :: bodies
-      logical, intent(in) :: prescribed(:)
-      type(increment_data_type), intent(in) :: data
-      type(heat_rates_type) :: rates
-      real(dp) :: scale
-
-      rates = data%equation%rates_at_start(bodies%thermal%matrix)
-      scale = max(maxval(abs(rates%conducted)), maxval(abs(data%equation%old%load)), &
-         maxval([0.0_dp, abs(rates%crossing)]), noise*bodies%thermal%largest_entry* &
-         maxval(abs(data%equation%temperature_old)), tiny(1.0_dp))
-      if (allocated(data%friction%old)) then
-         rates%friction_heat = data%friction%old
-         scale = max(scale, sum(abs(rates%friction_heat)))
-      end if
-      relative = maxval([0.0_dp, pack(abs(supplied_heat(bodies, edge_heat_type(), rates)), &
-         .not. prescribed)])/scale
-   end function start_imbalance
 
    !> Net rates, one per load card and per card of prescribed temperatures, summed by their sign.
    pure subroutine sum_rates(loads, temperature, residual, record)

@@ -55,7 +55,8 @@ contains
       type(model_type), intent(in) :: model
       logical, intent(in) :: counts(:)           !! (elements)
       real(dp), allocatable :: position(:, :)
-      integer :: e
+      real(dp) :: gradient
+      integer :: e, n
 
       self%points = make_points(model%mesh)
       call self%samples%prepare(model%mesh, model%sections, model%materials, &
@@ -70,7 +71,18 @@ contains
             self%samples%positions(model%mesh, e)
       end do
       call self%patches%prepare(model%mesh, self%points, self%samples%first, position, counts)
-      call measure_factors(self)
+      associate (fields => self%samples)
+         n = size(fields%material)
+         allocate (self%of_displacement(n), self%of_expansion(n), self%of_temperature(n))
+         do e = 1, n
+            gradient = maxval(abs(fields%inverse(:, fields%first(e):fields%first(e + 1) - 1)))
+            associate (material => fields%materials(fields%material(e)))
+               self%of_displacement(e) = gradient*maxval(abs(material%elasticity))
+               self%of_expansion(e) = maxval(abs(material%thermal_modulus))
+               self%of_temperature(e) = gradient*maxval(abs(material%conductivity))
+            end associate
+         end do
+      end associate
       if (any(has_law(model%materials)) .or. any([(allocated(model%steps(e)%element_prints), &
          e=1, size(model%steps))])) call prepare_integration(self, model)
    end subroutine prepare
@@ -97,25 +109,6 @@ contains
       end do
    end subroutine prepare_integration
 
-   subroutine measure_factors(self)
-      type(recovery_type), intent(inout) :: self
-      real(dp) :: gradient
-      integer :: e, n
-
-      associate (fields => self%samples)
-         n = size(fields%material)
-         allocate (self%of_displacement(n), self%of_expansion(n), self%of_temperature(n))
-         do e = 1, n
-            gradient = maxval(abs(fields%inverse(:, fields%first(e):fields%first(e + 1) - 1)))
-            associate (material => fields%materials(fields%material(e)))
-               self%of_displacement(e) = gradient*maxval(abs(material%elasticity))
-               self%of_expansion(e) = maxval(abs(material%thermal_modulus))
-               self%of_temperature(e) = gradient*maxval(abs(material%conductivity))
-            end associate
-         end do
-      end associate
-   end subroutine measure_factors
-
    !> Stress, averaged at the points, and its estimated error.
    pure subroutine recover_stress(self, model, displacement, temperature, remembered, stress, &
       estimate)
@@ -130,6 +123,7 @@ contains
       real(dp), allocatable :: samples(:, :), smooth(:, :)
       real(dp) :: values(most, 4), least, scale
       integer :: e
+      logical :: follows
 
       call set_temperature(self, model, temperature + model%initial_temperature)
       values = 0.0_dp
@@ -144,7 +138,16 @@ contains
       scale = scale_of(samples)
       do e = 1, size(errors)
          call self%quadrature%stress(model%mesh, e, displacement, temperature, values)
-         if (allocated(remembered)) call take_fit(self, model%mesh, e, samples, values)
+         follows = allocated(remembered)
+         if (follows) follows = self%integration%follows_law(model%mesh, e)
+         if (follows) then
+            associate (kind => model%mesh%element_kind(e), first => self%samples%first(e))
+               associate (n => self%quadrature%rules(kind)%count, m => recovery_count(kind))
+                  values(:n, :) = transpose(matmul(samples(:, first:first + m - 1), &
+                     self%at_quadrature(:m, :n, kind)))
+               end associate
+            end associate
+         end if
          call compare(self, model, e, 1/scale, smooth, values, errors(e))
       end do
       estimate = sum_up(model, scale, errors)
@@ -198,23 +201,6 @@ contains
       ! What is extrapolated to a node behind the plastic zone may be below 0.
       strains([5, 10], :) = max(strains([5, 10], :), 0.0_dp)
    end subroutine recover_strains
-
-   !> Stress by the law of a material at the points at which errors are integrated.
-   pure subroutine take_fit(self, mesh, e, samples, values)
-      type(recovery_type), intent(in) :: self
-      type(mesh_type), intent(in) :: mesh
-      integer, intent(in) :: e
-      real(dp), intent(in) :: samples(:, :)
-      real(dp), intent(inout) :: values(most, 4)
-
-      if (.not. self%integration%follows_law(mesh, e)) return
-      associate (kind => mesh%element_kind(e), first => self%samples%first(e))
-         associate (n => self%quadrature%rules(kind)%count, m => recovery_count(kind))
-            values(:n, :) = transpose(matmul(samples(:, first:first + m - 1), &
-               self%at_quadrature(:m, :n, kind)))
-         end associate
-      end associate
-   end subroutine take_fit
 
    !> Heat flux, averaged at the points, and its estimated error.
    pure subroutine recover_heat_flux(self, model, temperature, flux, estimate)

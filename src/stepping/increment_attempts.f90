@@ -12,7 +12,7 @@ module increment_attempts
    use errors, only: error_type, set_error, status_internal, status_no_convergence
    use friction_heating, only: nodal_friction_heat
    use heat_storage, only: begin_first_stage, begin_second_stage, measure_changes, measure_strains
-   use increment_checks, only: check_heat, check_record, note_shock, warn_of_choices, warn_of_tables
+   use increment_checks, only: check_record, note_shock, warn_of_choices, warn_of_tables
    use increment_data, only: load_places, stage_type, trial_type
    use increment_records, only: complete_record
    use field_problem, only: solved_loads_type
@@ -28,7 +28,7 @@ module increment_attempts
    use sparse_matrix, only: linear_combination
    use steps, only: solves_heat, solves_mechanics
    use text, only: append, to_text
-   use unconstrained_bodies, only: unconstrained_now
+   use unconstrained_bodies, only: unconstrained_now, undetermined_now
    implicit none
    private
    public :: attempt_type, attempt_increment, begin_record
@@ -462,6 +462,7 @@ contains
       type(model_type), intent(in) :: model
       type(attempt_type), intent(inout) :: attempt
       type(error_type), allocatable, intent(out) :: error
+      character(:), allocatable :: words
       real(dp) :: since
 
       associate (step => model%steps(run%control%step), bodies => run%bodies, &
@@ -472,8 +473,13 @@ contains
             attempt%trial_type, error)
          attempt%record%solution_report_type = workspace%record
          run%seconds%iterate = run%seconds%iterate + (wall_seconds() - since)
-         if (solves_heat(step%analysis)) call check_heat(run, model, &
-            data%equation%contact_diagonal(next%omega) > 0.0_dp, error)
+         if (solves_heat(step%analysis)) then
+            ! Bodies whose temperature is undetermined stand in place of whatever followed from it.
+            words = undetermined_now(model, bodies%points, run%loads%temperature%active, &
+               run%control%step, data%equation%contact_diagonal(next%omega) > 0.0_dp)
+            if (len(words) > 0 .and. allocated(error)) deallocate (error)
+            if (len(words) > 0) call set_error(error, status_no_convergence, words)
+         end if
          if (allocated(error)) then
             if (workspace%contact%driven) error%message = error%message// &
                unconstrained_now(model, bodies%points, bodies%laws%friction%coefficient > 0.0_dp, &

@@ -18,10 +18,10 @@ module increment_checks
    use solution_state, only: solution_state_type
    use steps, only: solves_heat, solves_mechanics
    use text, only: counted, to_text
-   use unconstrained_bodies, only: unconstrained_now, undetermined_now
+   use unconstrained_bodies, only: unconstrained_now
    implicit none
    private
-   public :: check_balance, check_heat, check_record, check_values
+   public :: check_balance, check_record, check_values
    public :: note_shock, warn_of_choices, warn_of_tables
 
    real(dp), parameter :: sound_violation = 1.0e-6_dp !! largest violation of a sound state
@@ -96,23 +96,6 @@ contains
          if (present(table)) call check_finite([table], what, status_no_convergence, error)
       end subroutine judge
    end subroutine check_values
-
-   !> Names the bodies whose temperature the conductances of an increment leave undetermined, in
-   !> place of whatever error followed from it.
-   !> Error: there are such bodies.
-   subroutine check_heat(run, model, carries, error)
-      type(simulation_type), intent(in) :: run                    !! with loads of the increment
-      type(model_type), intent(in) :: model
-      logical, intent(in) :: carries(:)                           !! (m) whether heat can cross
-      type(error_type), allocatable, intent(inout) :: error
-      character(:), allocatable :: words
-
-      words = undetermined_now(model, run%bodies%points, run%loads%temperature%active, &
-         run%control%step, carries)
-      if (len(words) == 0) return
-      if (allocated(error)) deallocate (error)
-      call set_error(error, status_no_convergence, words)
-   end subroutine check_heat
 
    !> Warns of what the loads leave open, once for as long as it stays: motions that nothing drives
    !> and nothing holds, contact states of which friction allows several.

@@ -78,8 +78,6 @@ contains
          if (allocated(error)) return
       end do
       call warn_of_pivot(run, record)
-      run%sizes%corrections = run%sizes%corrections + record%corrections
-      run%sizes%most_corrections = max(run%sizes%most_corrections, record%corrections)
       if (run%corrections%has_laws .and. solves_mechanics(model%steps(record%step)%analysis)) call &
          measure_energies(run, model, attempt%next, record)
       call accept_increment(attempt%next, model, run%state, record)

@@ -33,9 +33,6 @@ module run_sizes
       integer :: contact_unknowns = 0       !! unknowns on the contact points, largest of the steps
       integer(long) :: factor_bytes = 0     !! bytes of factors, largest so far
       integer :: heat_factored = 0          !! how often the matrix of heat was factored
-      integer :: stiffness_factored = 0     !! and the stiffness
-      integer :: corrections = 0            !! of operators, over all increments
-      integer :: most_corrections = 0       !! in one of them
       real(dp) :: smallest_pivot = 1.0_dp   !! over its diagonal entry, smallest so far [-]
    end type run_size_type
 
@@ -97,7 +94,6 @@ contains
          call measure_field(heat_reductions(i))
       end do
       sizes%heat_factored = sum(heat_reductions%factored)
-      sizes%stiffness_factored = bodies%equilibrium%factored
       sizes%factor_bytes = max(sizes%factor_bytes, bytes)
    contains
       subroutine measure_field(field)

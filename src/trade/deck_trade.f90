@@ -209,9 +209,20 @@ contains
       type(trade_type), intent(inout) :: trade            !! receives them
       type(trade_row_type), allocatable, intent(inout) :: rows(:)
       real(dp) :: expected(size(rows))
-      integer :: i
+      integer :: coarser, i, local
 
-      expected = [(expected_seconds(trade%rows, rows(i)%variation), i=1, size(rows))]
+      ! From the one on the next coarser mesh with the same elements and increments; of the coarsest
+      ! mesh 0.
+      do i = 1, size(rows)
+         associate (mesh => rows(i)%variation, measured => trade%rows%variation)
+            local = merge(1, 0, mesh%contact_levels > 0)
+            coarser = findloc(measured%order == mesh%order .and. measured%contact_levels == &
+               mesh%contact_levels - local .and. measured%levels == mesh%levels - (1 - local) &
+               .and. abs(measured%increments - mesh%increments) <= 0.0_dp, .true., dim=1)
+            expected(i) = merge(0.0_dp, unknown, mesh%levels + mesh%contact_levels == 0)
+         end associate
+         if (coarser > 0) expected(i) = growth*trade%rows(coarser)%cpu_seconds
+      end do
       where (rows%is_default) expected = 0.0_dp
       do i = 1, size(rows)
          if (expected(i) <= limit .or. expected(i) >= unknown) cycle
@@ -220,21 +231,6 @@ contains
       end do
       rows = rows(pack([(i, i=1, size(rows))], expected <= limit))
    end subroutine leave_out_expensive
-
-   !> CPU seconds of a row, from the one on the next coarser mesh with the same elements and
-   !> increments; 0 on the coarsest mesh.
-   pure real(dp) function expected_seconds(rows, mesh)
-      type(trade_row_type), intent(in) :: rows(:)      !! measured
-      type(variation_type), intent(in) :: mesh
-      integer :: coarser, local
-
-      local = merge(1, 0, mesh%contact_levels > 0)
-      coarser = findloc(rows%variation%order == mesh%order .and. rows%variation%contact_levels == &
-         mesh%contact_levels - local .and. rows%variation%levels == mesh%levels - (1 - local) &
-         .and. abs(rows%variation%increments - mesh%increments) <= 0.0_dp, .true., dim=1)
-      expected_seconds = merge(0.0_dp, unknown, mesh%levels + mesh%contact_levels == 0)
-      if (coarser > 0) expected_seconds = growth*rows(coarser)%cpu_seconds
-   end function expected_seconds
 
    !> Runs some rows. A row that fails keeps its reason.
    !> Errors: status_interrupted after a signal, then only the rows that were measured remain;
