@@ -131,8 +131,8 @@ contains
       type(accuracy_request_type), intent(in) :: request
       integer, intent(in) :: interfaces                      !! number of them
       integer, intent(in) :: steps                           !! number of them
-      type(accuracy_round_type), allocatable :: rounds(:)
-      integer :: i, k, n
+      type(accuracy_round_type) :: round
+      integer :: i, k
 
       self%is_on = allocated(request%targets)
       if (.not. self%is_on) return
@@ -149,11 +149,8 @@ contains
          end do
          allocate (self%largest(size(self%demands)), source=0.0_dp)
       end if
-      n = size(self%rounds)
-      allocate (rounds(n + 1))
-      rounds(:n) = self%rounds
-      allocate (rounds(n + 1)%findings(size(self%demands), steps))
-      call move_alloc(rounds, self%rounds)
+      allocate (round%findings(size(self%demands), steps))
+      self%rounds = [self%rounds, round]
    end subroutine begin_round
 
    !> Follows an accepted increment; the end of a step is judged.
@@ -185,8 +182,8 @@ contains
                finding = found(self%demands(d), points, &
                   record%uncertainties(self%demands(d)%quantity, self%demands(d)%interface), scale)
                finding%instead = '0 at the end of each step'
-               if (quantity%name == 'heat_rate' .and. .not. allocated(contact%heat_flux)) &
-                  finding%instead = 'no heat'
+               if (quantity%name == 'heat_rate' .and. .not. &
+                  allocated(contact%heat_flux)) finding%instead = 'no heat'
                if (quantity%resolution > 0.0_dp) finding%instead = end_words(quantity%name, contact)
                if (quantity%name == 'peak_pressure') then
                   finding%is_at_end = any(peak_is_at_end(points, contact))
@@ -362,9 +359,22 @@ contains
       integer, intent(in) :: most_rounds
       logical, intent(in) :: nothing_is_left     !! whether there is nothing to refine
       logical, intent(in) :: is_late             !! whether another round takes longer than is left
+      character(:), allocatable :: words
+      integer :: d, s
       logical :: only_corners_are_missed, only_slides_are_missed
 
-      call name_idle(self)
+      ! What there is in place of a quantity that no step of the round has.
+      do d = 1, size(self%demands)
+         associate (findings => self%rounds(size(self%rounds))%findings(d, :))
+            words = ''
+            do s = 1, merge(0, size(findings), any(findings%is_there))
+               if (index(words, findings(s)%instead) > 0) cycle
+               if (words /= '') words = words//' or '
+               words = words//findings(s)%instead
+            end do
+         end associate
+         self%demands(d)%idle = words
+      end do
       self%reason = ''
       if (self%is_reached()) return
       associate (findings => self%rounds(size(self%rounds))%findings)
@@ -406,24 +416,5 @@ contains
          end associate
       end do
    end function stands_still
-
-   !> Says of each demand that no step of the present round has what there is instead.
-   subroutine name_idle(self)
-      class(accuracy_rounds_type), intent(inout) :: self
-      character(:), allocatable :: words
-      integer :: d, s
-
-      do d = 1, size(self%demands)
-         associate (findings => self%rounds(size(self%rounds))%findings(d, :))
-            words = ''
-            do s = 1, merge(0, size(findings), any(findings%is_there))
-               if (index(words, findings(s)%instead) > 0) cycle
-               if (words /= '') words = words//' or '
-               words = words//findings(s)%instead
-            end do
-         end associate
-         self%demands(d)%idle = words
-      end do
-   end subroutine name_idle
 
 end module accuracy_rounds

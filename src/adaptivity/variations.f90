@@ -62,6 +62,8 @@ contains
       type(variation_type), intent(in) :: variation   !! what is other than in the deck
       type(model_type), intent(out) :: model          !! to be solved
       type(error_type), allocatable, intent(out) :: error
+      character(:), allocatable :: reason
+      logical :: with_mechanics
 
       model = read
       call apply_variation(variation, model)
@@ -73,7 +75,20 @@ contains
       call apply_transforms(model)
       call find_bodies(model%mesh)
       model%has_solver_by_size = model%solver == solver_by_size
-      if (model%has_solver_by_size) call choose_solver(model)
+      if (.not. model%has_solver_by_size) return
+      with_mechanics = any(solves_mechanics(model%steps%analysis))
+      associate (nodes => size(model%mesh%node_number))
+         reason = trim(', because the nodes have '//to_text(merge(2, 1, with_mechanics)*nodes)// &
+            merge(' displacements', ' temperatures ', with_mechanics))
+         model%solver = default_solver(real(nodes, dp), with_mechanics)
+      end associate
+      if (model%solver == solver_mumps) then
+         call append(model%notes, 'no *SOLVER: MUMPS'//reason//' (SKYLINE below '// &
+            to_text(mumps_from)//')')
+      else
+         call append(model%notes, 'no *SOLVER: SKYLINE'//reason//' (MUMPS from '// &
+            to_text(mumps_from)//' on)')
+      end if
    end subroutine vary
 
    !> Order of the elements of a variation.
@@ -238,28 +253,6 @@ contains
          end do
       end associate
    end subroutine lower_order
-
-   !> Chooses the solver of a deck without *SOLVER by the size of its model, and notes why.
-   subroutine choose_solver(model)
-      type(model_type), intent(inout) :: model
-      character(:), allocatable :: reason
-      logical :: with_mechanics
-
-      with_mechanics = any(solves_mechanics(model%steps%analysis))
-      associate (nodes => size(model%mesh%node_number))
-         reason = ', because the nodes have '//to_text(merge(2, 1, with_mechanics)*nodes)// &
-            merge(' displacements', ' temperatures ', with_mechanics)
-         model%solver = default_solver(real(nodes, dp), with_mechanics)
-      end associate
-      reason = trim(reason)
-      if (model%solver == solver_mumps) then
-         call append(model%notes, 'no *SOLVER: MUMPS'//reason//' (SKYLINE below '// &
-            to_text(mumps_from)//')')
-      else
-         call append(model%notes, 'no *SOLVER: SKYLINE'//reason//' (MUMPS from '// &
-            to_text(mumps_from)//' on)')
-      end if
-   end subroutine choose_solver
 
    !> An increment that a factor makes longer or shorter; none is longer than its step.
    elemental function varied_increment(first, period, factor) result(increment)

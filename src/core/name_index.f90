@@ -63,10 +63,9 @@ contains
    end function is_pattern
 
    !> Whether a name is what a pattern says, in which * is any characters, or the pattern itself.
-   pure recursive function matches(pattern, name) result(fits)
+   pure recursive logical function matches(pattern, name) result(fits)
       character(*), intent(in) :: pattern      !! in upper case, as the name
       character(*), intent(in) :: name
-      logical :: fits
       integer :: k, star
 
       star = index(pattern, '*')

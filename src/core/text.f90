@@ -317,9 +317,8 @@ contains
 
    !> Whether a text is written as a real; list-directed input alone would also accept "1*2", "5/3"
    !> or "1-5".
-   pure function has_form_of_real(string) result(valid)
+   pure logical function has_form_of_real(string) result(valid)
       character(*), intent(in) :: string
-      logical :: valid
       integer :: mark, point
 
       mark = scan(string//'E', 'eEdD')

@@ -33,7 +33,10 @@ contains
       type(model_type), intent(inout) :: model
       type(parts_type) :: parts
       type(equation_type), allocatable :: own(:)
-      integer :: owner(1, size(model%mesh%element_kind)), s
+      type(load_type), allocatable :: loads(:)
+      logical, allocatable :: stays(:)
+      integer, allocatable :: order(:)
+      integer :: i, owner(1, size(model%mesh%element_kind)), s
 
       call apply_temperatures(model)
       model%equations = model%equations(:model%deck_equations)
@@ -46,7 +49,18 @@ contains
       if (allocated(model%mesh%deck_element)) owner(1, :) = model%mesh%deck_element
       call invert_lists(owner, spread(1, 1, size(owner)), maxval(owner), parts%start, parts%element)
       do s = 1, size(model%steps)
-         call apply_loads(parts, s, model)
+         call collect_loads(parts, s, model, loads)
+         order = sort_order(loads%component)
+         order = order(sort_order(loads(order)%item))
+         loads = loads(order(sort_order(loads(order)%kind)))
+         stays = spread(.true., 1, size(loads))
+         do i = 1, size(loads) - 1
+            if (all(loads(i)%kind /= [load_film_coefficient, load_film_sink])) cycle
+            ! As in CalculiX the last card holds, while other loads add up.
+            stays(i) = loads(i)%kind /= loads(i + 1)%kind .or. loads(i)%item /= loads(i + 1)%item &
+               .or. loads(i)%component /= loads(i + 1)%component
+         end do
+         model%steps(s)%loads = pack(loads, stays)
          call apply_supports(s, model)
       end do
    end subroutine apply_requests
@@ -106,31 +120,6 @@ contains
       if (side > 0 .and. allocated(mesh%on_deck_side)) items = pack(items, &
          mesh%on_deck_side(side, items))
    end function targets_of
-
-   !> Loads of a step, by kind, item and component.
-   pure subroutine apply_loads(parts, step, model)
-      type(parts_type), intent(in) :: parts
-      integer, intent(in) :: step
-      type(model_type), intent(inout) :: model
-      type(load_type), allocatable :: loads(:)
-      logical, allocatable :: stays(:)
-      integer, allocatable :: order(:)
-      integer :: i
-
-      call collect_loads(parts, step, model, loads)
-      order = sort_order(loads%component)
-      order = order(sort_order(loads(order)%item))
-      order = order(sort_order(loads(order)%kind))
-      loads = loads(order)
-      allocate (stays(size(loads)), source=.true.)
-      do i = 1, size(loads) - 1
-         if (all(loads(i)%kind /= [load_film_coefficient, load_film_sink])) cycle
-         ! As in CalculiX the last card holds, while other loads add up.
-         stays(i) = loads(i)%kind /= loads(i + 1)%kind .or. loads(i)%item /= loads(i + 1)%item &
-            .or. loads(i)%component /= loads(i + 1)%component
-      end do
-      model%steps(step)%loads = pack(loads, stays)
-   end subroutine apply_loads
 
    !> Loads of a step in the order of the cards, behind them those of the nodal fields.
    pure subroutine collect_loads(parts, step, model, loads)

@@ -38,7 +38,7 @@ contains
       logical, intent(inout) :: chosen(:)                  !! (elements) those that are divided
       integer, allocatable :: together(:, :)
       type(element_sides_type) :: sides
-      integer :: i
+      integer :: i, large
       logical :: is_new
 
       call find_opposite(model, together)
@@ -50,7 +50,16 @@ contains
             chosen(together(:, i)) = .true.
             is_new = .true.
          end do
-         call choose_coarse(model%mesh, sides, chosen, is_new)
+         ! Those with sides twice as long beside them.
+         do i = 1, hanging_count(model%mesh)
+            large = sides%elements(1, sides%index_of(coarse_side(model%mesh, i)))
+            associate (small => fine_sides(model%mesh, i))
+               if (chosen(large) .or. .not. (chosen(sides%elements(1, sides%index_of( &
+                  small(:, 1)))) .or. chosen(sides%elements(1, sides%index_of(small(:, 2)))))) cycle
+            end associate
+            chosen(large) = .true.
+            is_new = .true.
+         end do
          if (.not. is_new) exit
       end do
    end subroutine choose_neighbours
@@ -297,26 +306,6 @@ contains
          ends(:, 2) = nodes([2, 5, 3])
       end associate
    end function fine_sides
-
-   !> Chooses the elements with sides twice as long beside those that are chosen.
-   pure subroutine choose_coarse(mesh, sides, chosen, is_new)
-      type(mesh_type), intent(in) :: mesh
-      type(element_sides_type), intent(in) :: sides
-      logical, intent(inout) :: chosen(:)
-      logical, intent(inout) :: is_new          ! .true. if any was chosen
-      integer :: h, large
-
-      do h = 1, hanging_count(mesh)
-         large = sides%elements(1, sides%index_of(coarse_side(mesh, h)))
-         associate (small => fine_sides(mesh, h))
-            if (chosen(large)) cycle
-            if (.not. (chosen(sides%elements(1, sides%index_of(small(:, 1)))) .or. &
-               chosen(sides%elements(1, sides%index_of(small(:, 2)))))) cycle
-            chosen(large) = .true.
-            is_new = .true.
-         end associate
-      end do
-   end subroutine choose_coarse
 
    !> Number of sides where nodes hang.
    pure integer function hanging_count(mesh)

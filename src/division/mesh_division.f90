@@ -65,7 +65,7 @@ contains
       type(mesh_type), intent(in) :: mesh           !! elements of any kinds
       logical, intent(in) :: chosen(:)              !! (elements) those that are divided
       type(division_type) :: division               !! the division
-      integer :: e, h, side
+      integer :: e, h, last, side
 
       division%nodes = size(mesh%node_number)
       division%elements = size(mesh%element_number)
@@ -78,31 +78,22 @@ contains
          side = division%sides%index_of(coarse_side(mesh, h))
          division%between(:, side) = nodes_between(mesh, h, division%sides%ends(1, side))
       end do
-      call number_nodes(mesh%element_kind, chosen, division)
-      call find_weights(mesh, division)
-   end function divide
-
-   pure subroutine number_nodes(kinds, chosen, division)
-      integer, intent(in) :: kinds(:)
-      logical, intent(in) :: chosen(:)
-      type(division_type), intent(inout) :: division
-      integer :: e, last, s
-
       last = division%nodes
-      allocate(division%inner_start(division%elements))
-      do s = 1, division%sides%count
-         if (division%between(1, s) > 0) cycle
-         if (.not. any(chosen(division%elements_at(s)))) cycle
-         division%between(1, s) = last + 1
-         if (division%sides%ends(2, s) > 0) division%between(2, s) = last + 2
-         last = maxval(division%between(:, s))
+      do side = 1, division%sides%count
+         if (division%between(1, side) > 0) cycle
+         if (.not. any(chosen(division%elements_at(side)))) cycle
+         division%between(1, side) = last + 1
+         if (division%sides%ends(2, side) > 0) division%between(2, side) = last + 2
+         last = maxval(division%between(:, side))
       end do
+      allocate(division%inner_start(division%elements))
       do e = 1, division%elements
          division%inner_start(e) = last
-         if (chosen(e)) last = last + inner_count(kinds(e))
+         if (chosen(e)) last = last + inner_count(mesh%element_kind(e))
       end do
       division%nodes_after = last
-   end subroutine number_nodes
+      call find_weights(mesh, division)
+   end function divide
 
    !> Sides where nodes hang afterwards, as in mesh_type.
    pure function hanging_after(division, mesh) result(hanging)

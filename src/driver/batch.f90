@@ -130,10 +130,19 @@ contains
       type(command_type), intent(in) :: command
       integer, intent(out) :: status
       type(deck_report_type) :: report
-      integer :: i, runs
+      integer :: i, k, runs
 
       self%command = command
-      call check_names(command, status)
+      status = 0
+      ! Two decks with the same results are an error before anything runs.
+      do i = 2, size(command%decks)
+         do k = 1, i - 1
+            if (base_name(command%decks(i)%value) /= base_name(command%decks(k)%value)) cycle
+            call print_error('thercon', command%decks(k)%value//' and '//command%decks(i)%value// &
+               ' would have the same results')
+            status = status_deck
+         end do
+      end do
       if (status /= 0) return
       self%noun = 'deck'
       runs = size(command%decks)
@@ -170,23 +179,6 @@ contains
       call write_batch(batch_table_of(self%command), self%outcomes, error, self%table%names, &
          self%table%values)
    end subroutine write_table
-
-   !> Two decks with the same results are an error before anything runs.
-   subroutine check_names(command, status)
-      type(command_type), intent(in) :: command
-      integer, intent(out) :: status
-      integer :: deck, other
-
-      status = 0
-      do deck = 2, size(command%decks)
-         do other = 1, deck - 1
-            if (base_name(command%decks(deck)%value) /= base_name(command%decks(other)%value)) cycle
-            call print_error('thercon', command%decks(other)%value//' and '// &
-               command%decks(deck)%value//' would have the same results')
-            status = status_deck
-         end do
-      end do
-   end subroutine check_names
 
    !> Makes the table, which no other batch writes, and in which nothing of an earlier one is left.
    !> Errors: as check_inputs and make_folder; status_internal where another batch writes it.
@@ -274,12 +266,12 @@ contains
       end do
    end subroutine start_decks
 
-   !> Takes what has ended.
+   !> Takes what has ended, with the results of a row that came to its end.
    subroutine collect(self, has_collected)
       type(batch_type), intent(inout) :: self
       logical, intent(out) :: has_collected   !! whether anything had ended
       character(:), allocatable :: printed
-      integer :: s
+      integer :: i, s
 
       has_collected = .false.
       do s = 1, size(self%running)
@@ -289,7 +281,16 @@ contains
          associate (task => self%tasks(self%running(s)%deck), &
             outcome => self%outcomes(self%running(s)%deck))
             call take_end(self%running(s), outcome, printed)
-            call take_row(task, outcome, printed)
+            if (task%command%row > 0 .and. has_come_to_its_end(outcome)) call outcome%row%read( &
+               row_file_of(task%path, task%command))
+            if (task%command%row > 0 .and. len(printed) > 0) then
+               ! Of which row the messages are.
+               printed = new_line('a')//printed
+               do i = size(task%command%settings), 1, -1
+                  printed = ' '//task%command%settings(i)%value//printed
+               end do
+               printed = outcome%path//':'//printed
+            end if
             self%ended = self%ended + 1
             if (outcome%report%status /= 0) self%failed = self%failed + 1
             call self%progress%clear()
@@ -330,23 +331,6 @@ contains
       if (len(printed) > 0) printed = printed//new_line('a')
       printed = printed//outcome%path//': error: '//reason_of(outcome%report)
    end subroutine take_end
-
-   !> Takes the results of a row that came to its end, and says of which row its messages are.
-   subroutine take_row(task, outcome, printed)
-      type(deck_task_type), intent(in) :: task
-      type(deck_outcome_type), intent(inout) :: outcome
-      character(:), allocatable, intent(inout) :: printed   !! messages
-      integer :: i
-
-      if (task%command%row == 0) return
-      if (has_come_to_its_end(outcome)) call outcome%row%read(row_file_of(task%path, task%command))
-      if (len(printed) == 0) return
-      printed = new_line('a')//printed
-      do i = size(task%command%settings), 1, -1
-         printed = ' '//task%command%settings(i)%value//printed
-      end do
-      printed = outcome%path//':'//printed
-   end subroutine take_row
 
    !> Whether all increments of a run are solved, whatever is judged of them.
    pure logical function has_come_to_its_end(outcome)

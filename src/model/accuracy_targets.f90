@@ -59,6 +59,7 @@ contains
       type(accuracy_target_type), allocatable, intent(out) :: targets(:)
       character(:), allocatable, intent(out) :: hint      !! what an unknown name may mean, or empty
       character(:), allocatable :: part, rest
+      type(accuracy_target_type) :: target
       type(string_type) :: known(size(short_names))
       real(dp) :: bound
       integer :: comma, equals, i, q
@@ -89,22 +90,11 @@ contains
          if (.not. valid) deallocate (targets)
          if (.not. valid) return
          if (equals == 0) targets = whole_request(bound/100.0_dp)
-         if (equals > 0) call add_target(targets, trim(quantities(q)), bound/100.0_dp)
+         if (equals == 0) cycle
+         target%quantity = trim(quantities(q))
+         target%bound = bound/100.0_dp
+         targets = [targets, target]
       end do
    end subroutine read_request
-
-   !> Adds a target of all interfaces.
-   pure subroutine add_target(targets, quantity, bound)
-      type(accuracy_target_type), allocatable, intent(inout) :: targets(:)
-      character(*), intent(in) :: quantity
-      real(dp), intent(in) :: bound
-      type(accuracy_target_type), allocatable :: longer(:)
-
-      allocate (longer(size(targets) + 1))
-      longer(:size(targets)) = targets
-      longer(size(longer))%quantity = quantity
-      longer(size(longer))%bound = bound
-      call move_alloc(longer, targets)
-   end subroutine add_target
 
 end module accuracy_targets

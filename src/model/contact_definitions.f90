@@ -120,9 +120,8 @@ contains
    end function latest_friction
 
    !> Whether a step gives some interaction friction.
-   pure function brings_friction(changes) result(brings)
+   pure logical function brings_friction(changes) result(brings)
       type(contact_changes_type), intent(in) :: changes
-      logical :: brings
 
       brings = .false.
       if (.not. allocated(changes%frictions)) return
@@ -138,10 +137,9 @@ contains
    end function makes_friction_heat
 
    !> Whether an interface is removed, after the changes of some steps in their order.
-   pure function is_removed(changes, contact) result(removed)
+   pure logical function is_removed(changes, contact) result(removed)
       type(contact_changes_type), intent(in) :: changes(:)   !! (steps)
       integer, intent(in) :: contact                         !! index into model%contacts
-      logical :: removed
       integer :: i, s
 
       removed = .false.

@@ -443,9 +443,22 @@ contains
       type(material_type), intent(inout) :: material
       real(dp), allocatable :: rows(:)
       real(dp) :: at(3), width
-      integer :: i
+      integer :: i, k
 
-      rows = content_rows(material)
+      ! Those of density and specific heat, ascending.
+      allocate (rows(0))
+      do i = 1, size(material%given)
+         associate (property => material%given(i))
+            if (size(property%temperature) == 1 .or. .not. any(property%kind == [of_density, &
+               of_specific_heat])) cycle
+            do k = 1, size(property%temperature)
+               associate (there => property%temperature(k))
+                  if (.not. any(abs(rows - there) <= 0.0_dp)) rows = [pack(rows, rows < there), &
+                     there, pack(rows, rows > there)]
+               end associate
+            end do
+         end associate
+      end do
       if (size(rows) == 0) rows = [0.0_dp]
       associate (n => size(rows), heat => material%heat)
          heat%from = [rows(1), rows]
@@ -490,27 +503,6 @@ contains
          temperature = heat%from(i)
       end associate
    end subroutine least_heat_capacity
-
-   !> Temperatures of the rows of density and specific heat, ascending.
-   pure function content_rows(material) result(rows)
-      type(material_type), intent(in) :: material
-      real(dp), allocatable :: rows(:)
-      integer :: i, k
-
-      allocate (rows(0))
-      do i = 1, size(material%given)
-         associate (property => material%given(i))
-            if (size(property%temperature) == 1 .or. .not. any(property%kind == &
-               [of_density, of_specific_heat])) cycle
-            do k = 1, size(property%temperature)
-               associate (there => property%temperature(k))
-                  if (.not. any(abs(rows - there) <= 0.0_dp)) rows = [pack(rows, rows < there), &
-                     there, pack(rows, rows > there)]
-               end associate
-            end do
-         end associate
-      end do
-   end function content_rows
 
    pure real(dp) function capacity_at(material, temperature) result(capacity)
       type(material_type), intent(in) :: material

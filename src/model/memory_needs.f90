@@ -116,11 +116,10 @@ contains
 
    !> Entries of the skyline of one unknown a node, with the columns of the contact points, after
    !> refinement.
-   function profile(model, kinds, points, levels) result(entries)
+   real(dp) function profile(model, kinds, points, levels) result(entries)
       type(model_type), intent(in) :: model
       integer, intent(in) :: kinds(:), levels
       real(dp), intent(in) :: points
-      real(dp) :: entries
       type(sparse_matrix_type) :: lower
       integer :: i
 

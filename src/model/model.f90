@@ -66,7 +66,8 @@ module model
       procedure :: title => title_of_check
    end type verify_type
 
-   !> A spring or a truss, which resists its elongation, a sum of displacements of its nodes; its force is stiffness*elongation less warm_force*temperature.
+   !> A spring or a truss, which resists its elongation, a sum of displacements of its nodes; its
+   !> force is stiffness*elongation less warm_force*temperature.
    type :: bar_type
       type(equation_type) :: elongation         !! its terms sum up to the elongation [length]
       type(equation_type) :: mean               !! those of the mean temperature

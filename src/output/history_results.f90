@@ -67,16 +67,14 @@ contains
       type(requested_table_type), intent(in) :: table
       type(model_type), intent(in) :: model
       integer, intent(in) :: expected
-      type(set_history_type), allocatable :: longer(:)
+      type(set_history_type) :: history
       integer :: i, place
 
       place = place_of(self, table)
       if (place == 0) then
          place = size(self%histories) + 1
-         allocate (longer(place))
-         longer(:place - 1) = self%histories
-         call start_history(self, table, model, expected, longer(place))
-         call move_alloc(longer, self%histories)
+         call start_history(self, table, model, expected, history)
+         self%histories = [self%histories, history]
       end if
       do i = 1, size(table%columns)
          call add_dataset(self%histories(place), table%columns(i), size(table%member), expected, &
@@ -145,7 +143,7 @@ contains
       type(table_column_type), intent(in) :: column
       integer, intent(in) :: width, expected
       character(*), intent(in) :: suffix               ! of its description
-      type(growing_dataset_type), allocatable :: longer(:)
+      type(growing_dataset_type) :: dataset
       character(len(column%name)) :: words
       integer :: i
 
@@ -155,11 +153,9 @@ contains
          if (words(i:i) == '_') words(i:i) = ' '
       end do
       call append_text(history%names, column%name)
-      allocate (longer(size(history%names)))
-      longer(:size(longer) - 1) = history%sets
-      longer(size(longer)) = growing_dataset(history%group//'/'//column%name, as_real, width, 1, &
+      dataset = growing_dataset(history%group//'/'//column%name, as_real, width, 1, &
          expected, words//suffix, trim(column%unit))
-      call move_alloc(longer, history%sets)
+      history%sets = [history%sets, dataset]
    end subroutine add_dataset
 
    !> Adds the tables of an increment: a row for each set of which one is due, NaN for what none of
@@ -265,9 +261,8 @@ contains
    end subroutine go_on
 
    !> Bytes that wait in memory.
-   pure function bytes(self)
+   pure integer(long) function bytes(self)
       class(history_results_type), intent(in) :: self
-      integer(long) :: bytes
       integer :: i
 
       bytes = 0_long

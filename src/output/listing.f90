@@ -80,12 +80,23 @@ contains
       type(run_summary_type), intent(in) :: run
       type(error_type), allocatable, intent(out) :: error !! what went wrong
       type(string_type), allocatable :: running(:)
+      character(19) :: date
+      character(111) :: program
+      integer :: now(8)
 
       self%is_draft = is_draft
       if (.not. is_draft) call empty_file(self%descriptor, self%path, error)
       if (allocated(error)) return
       allocate(self%diagrams(merge(size(interfaces), 0, lists_points(model))))
-      call print_heading(self%page, model, run)
+      call date_and_time(values=now)
+      write (date, '(i4.4, 2("-", i2.2), 1x, 2(i2.2, ":"), i2.2)') now(1:3), now(5:7)
+      program = 'THERCON '//or_blank(run%version)//'   THERMOMECHANICAL CONTACT IN TWO DIMENSIONS'
+      call self%page%line(repeat('=', page_width))
+      call self%page%line(program//date)
+      call self%page%line(repeat('=', page_width))
+      call self%page%line('deck      '//or_blank(run%deck_path))
+      if (allocated(run%origin)) call self%page%wrapped('goes on   ', run%origin)
+      call self%page%wrapped('heading   ', or_blank(model%heading))
       call self%page%title('SUMMARY')
       self%summary_start = self%page%length
       allocate (running(0))
@@ -313,25 +324,6 @@ contains
       if (self%descriptor >= 0 .and. .not. keeps_lock) call unlock_file(self%path, self%descriptor)
       self%descriptor = -1
    end subroutine close_listing
-
-   subroutine print_heading(page, model, run)
-      type(page_type), intent(inout) :: page
-      type(model_type), intent(in) :: model
-      type(run_summary_type), intent(in) :: run
-      character(19) :: date
-      character(111) :: program
-      integer :: now(8)
-
-      call date_and_time(values=now)
-      write (date, '(i4.4, 2("-", i2.2), 1x, 2(i2.2, ":"), i2.2)') now(1:3), now(5:7)
-      program = 'THERCON '//or_blank(run%version)//'   THERMOMECHANICAL CONTACT IN TWO DIMENSIONS'
-      call page%line(repeat('=', page_width))
-      call page%line(program//date)
-      call page%line(repeat('=', page_width))
-      call page%line('deck      '//or_blank(run%deck_path))
-      if (allocated(run%origin)) call page%wrapped('goes on   ', run%origin)
-      call page%wrapped('heading   ', or_blank(model%heading))
-   end subroutine print_heading
 
    !> Prints the contact points of each interface that never came nearer than they were.
    subroutine print_unapproached(page, node_number, interfaces, summary)

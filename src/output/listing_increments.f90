@@ -263,8 +263,8 @@ contains
             if (is_end_of_face(estimated(q), points, own%value)) cycle
             ! That of friction is 0 without it.
             is_told = abs(own%value) > 0.0_dp
-            if (.not. (is_told .or. estimated(q)%is_of_friction .or. ieee_is_nan(own%total))) &
-               is_told = own%total > 0.0_dp
+            if (.not. (is_told .or. estimated(q)%is_of_friction .or. &
+               ieee_is_nan(own%total))) is_told = own%total > 0.0_dp
             if (is_told) names(q) = words_of(estimated(q)%name)
          end associate
       end do

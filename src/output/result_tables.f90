@@ -154,8 +154,8 @@ contains
       end do
    end subroutine write_geometry
 
-   !> Writes each rigid surface, which has no elements, before deformation as points of a line, arcs divided finely, with
-   !> the nodes that it follows. Without such surfaces there is no group.
+   !> Writes each rigid surface, which has no elements, before deformation as points of a line, arcs
+   !> divided finely, with the nodes that it follows. Without such surfaces there is no group.
    subroutine write_rigid_surfaces(file, mesh)
       type(hdf5_writer_type), intent(inout) :: file       !! the open file
       type(mesh_type), intent(in) :: mesh

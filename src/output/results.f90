@@ -388,9 +388,8 @@ contains
       end associate
    end function what_is_solved
 
-   pure function waiting_bytes(self) result(bytes)
+   pure integer(long) function waiting_bytes(self) result(bytes)
       class(results_type), intent(in) :: self
-      integer(long) :: bytes
       integer :: i
 
       bytes = bytes_in(self%fields%sets) + self%histories%bytes()

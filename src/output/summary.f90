@@ -314,8 +314,8 @@ contains
          if (self%last%inelastic_strain(i, b) <= 0.0_dp) cycle
          reason = reason_inside_step(model)
          if (reason == no_reason .and. allocated(self%last%body_uncertainties)) then
-            if (.not. ieee_is_nan(self%last%body_uncertainties(b)%maxima(first_strain + i)%value)) &
-               cycle
+            if (.not. ieee_is_nan( &
+               self%last%body_uncertainties(b)%maxima(first_strain + i)%value)) cycle
             reason = at_corner
          end if
          call append(lines, summary_line(strain_names(i), self%last%inelastic_strain(i, b), &

@@ -199,10 +199,9 @@ contains
    end function history_value
 
    !> A quantity of the small motions; NaN where they are not known.
-   pure function stability_value(name, record) result(value)
+   pure real(dp) function stability_value(name, record) result(value)
       character(*), intent(in) :: name
       type(increment_record_type), intent(in) :: record
-      real(dp) :: value
 
       value = ieee_value(value, ieee_quiet_nan)
       if (.not. allocated(record%stability)) return

@@ -343,8 +343,8 @@ contains
       record%shear = shears(points, shear_force, closed, friction, record%pressure)
       record%normal_force = sum(force)
       record%shear_force = sum(shear_force)
-      if (abs(record%shear_force) <= no_shear*sum(abs(force) + abs(shear_force))) &
-         record%shear_force = 0.0_dp
+      if (abs(record%shear_force) <= no_shear*sum(abs(force) + &
+         abs(shear_force))) record%shear_force = 0.0_dp
       profile = contact_profile(points, record%contact_state, record%pressure, record%shear, &
          record%gap - overlap)
       call contact_edges(profile, record%edges_contact, record%edge_contact)
