@@ -110,7 +110,7 @@ contains
       type(mesh_type), intent(inout) :: mesh
       real(dp), allocatable :: coordinates(:, :)
       integer :: child, i, first, k, parent(division%elements_after)
-      integer, allocatable :: divided(:)
+      integer, allocatable :: children(:, :), divided(:)
       logical :: is_member(division%nodes)
 
       do i = 1, size(mesh%node_sets)
@@ -142,7 +142,19 @@ contains
       first = maxval(mesh%element_number) - division%elements
       mesh%element_number = [mesh%element_number, &
          (first + i, i=division%elements + 1, division%elements_after)]
-      call refine_elements(division, mesh%element_kind, mesh%element_nodes)
+      ! The children take the place of the elements that are divided.
+      allocate(children(8, division%elements_after))
+      children(:, :division%elements) = mesh%element_nodes
+      do i = 1, division%elements
+         if (division%rank(i) == 0) cycle
+         associate (nodes => nodes_of_children(division, mesh%element_kind(i), &
+            mesh%element_nodes(:, i), i))
+            do child = 1, 4
+               children(:, child_element(division, i, child)) = nodes(:, child)
+            end do
+         end associate
+      end do
+      call move_alloc(children, mesh%element_nodes)
       parent = parents_of(division)
       mesh%element_section = mesh%element_section(parent)
       mesh%element_kind = mesh%element_kind(parent)
@@ -246,26 +258,5 @@ contains
          if (corners == 3) children(:n, :) = reshape(own([triangle_children(:n, :)]), [n, 4])
       end associate
    end function nodes_of_children
-
-   !> Puts the children in the place of the elements that are divided.
-   subroutine refine_elements(division, kinds, element_nodes)
-      type(division_type), intent(in) :: division
-      integer, intent(in) :: kinds(:)                           !! (elements) before
-      integer, allocatable, intent(inout) :: element_nodes(:, :) !! (8, elements) as in mesh_type
-      integer, allocatable :: children(:, :)
-      integer :: e, child
-
-      allocate(children(8, division%elements_after))
-      children(:, :division%elements) = element_nodes
-      do e = 1, division%elements
-         if (division%rank(e) == 0) cycle
-         associate (nodes => nodes_of_children(division, kinds(e), element_nodes(:, e), e))
-            do child = 1, 4
-               children(:, child_element(division, e, child)) = nodes(:, child)
-            end do
-         end associate
-      end do
-      call move_alloc(children, element_nodes)
-   end subroutine refine_elements
 
 end module refinement

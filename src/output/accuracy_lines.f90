@@ -157,7 +157,8 @@ contains
             words = words//', step '//to_text(step)
          end if
          if (finding%is_met()) return
-         words = words//reason(finding)
+         if (finding%no_estimate /= no_reason) words = words//': '//words_of_reason( &
+            finding%no_estimate)
          if (finding%is_at_end .and. all(finding%no_estimate /= [at_corner, grows]) .and. &
             accuracy%stands_still()) words = words// &
             '; the peak is at an end of the face, where the pressure may grow '//'without limit'
@@ -196,15 +197,6 @@ contains
             labels))
       end function with_unit
    end function target_words
-
-   !> Why there is no uncertainty.
-   function reason(finding)
-      type(finding_type), intent(in) :: finding
-      character(:), allocatable :: reason
-
-      reason = ''
-      if (finding%no_estimate /= no_reason) reason = ': '//words_of_reason(finding%no_estimate)
-   end function reason
 
    function round_words(number, round) result(words)
       integer, intent(in) :: number

@@ -72,6 +72,7 @@ contains
       type(model_type), intent(in) :: model
       type(requested_table_type), allocatable, intent(out) :: tables(:)
       logical, allocatable :: nodes_due(:), elements_due(:)
+      real(dp), allocatable :: values(:, :)
       integer :: i, k, n
 
       associate (step => model%steps(record%step))
@@ -98,7 +99,19 @@ contains
             if (.not. elements_due(i)) cycle
             n = n + 1
             tables(n) = table_of_points(step%element_prints(i), model)
-            call take_points(record%element_points(i), tables(n))
+            tables(n)%position = record%element_points(i)%position
+            allocate (tables(n)%absent(0))
+            do k = 1, size(tables(n)%columns)
+               associate (column => tables(n)%columns(k))
+                  values = values_at(record%element_points(i), column%quantity)
+                  if (size(values, 1) > 0) then
+                     column%values = values(column%component, :)
+                  else if (column%component == 1) then
+                     tables(n)%absent = [character(5) :: tables(n)%absent, print_keys( &
+                        column%quantity)]
+                  end if
+               end associate
+            end do
          end do
       end associate
    end subroutine due_tables
@@ -319,27 +332,6 @@ contains
       case default   ! of integration points
       end select
    end function nodal_values
-
-   !> Takes the values of integration points.
-   pure subroutine take_points(points, table)
-      type(element_points_record_type), intent(in) :: points
-      type(requested_table_type), intent(inout) :: table
-      real(dp), allocatable :: values(:, :)
-      integer :: k
-
-      table%position = points%position
-      allocate (table%absent(0))
-      do k = 1, size(table%columns)
-         associate (column => table%columns(k))
-            values = values_at(points, column%quantity)
-            if (size(values, 1) > 0) then
-               column%values = values(column%component, :)
-            else if (column%component == 1) then
-               table%absent = [character(5) :: table%absent, print_keys(column%quantity)]
-            end if
-         end associate
-      end do
-   end subroutine take_points
 
    !> A quantity of integration points: (components, points), no component where the step does not
    !> have it.

@@ -81,11 +81,25 @@ contains
       type(model_type), intent(in) :: model
       type(contact_points_type), intent(in) :: interfaces(:)
       type(increment_record_type), intent(in) :: record
+      character(:), allocatable :: zone
+      integer :: i
       logical :: counts(size(record%fields%temperature))
 
       if (.not. allocated(self%steps)) allocate (self%steps(0))
-      if (record%last_of_step .and. size(model%steps) > 1) call add_step(self%steps, interfaces, &
-         record)
+      if (record%last_of_step .and. size(model%steps) > 1) then
+         ! A line for each interface; of many, one of the largest values.
+         if (has_many(size(interfaces))) then
+            call append(self%steps, step_line(record, [(largest_at(step_quantities(i), &
+               record%contacts), i=1, size(step_quantities))], closed_words(record%contacts)))
+         else
+            do i = 1, size(interfaces)
+               zone = zone_words('edge_contact', record%contacts(i))
+               if (zone == '') zone = zones('edge_contact', interfaces(i), record%contacts(i))
+               call append(self%steps, step_line(record, spread(i, 1, size(step_quantities)), &
+                  interfaces(i)%name//': '//zone))
+            end do
+         end if
+      end if
       self%last = record%increment_outcome_type
       if (allocated(record%cycle)) self%cycle = record%cycle
       if (record%is_fold) then
@@ -116,27 +130,6 @@ contains
       end do
       largest_at = maxloc(values, dim=1, mask=.not. ieee_is_nan(values))
    end function largest_at
-
-   !> Adds a line for each interface at the end of a step; of many, one of the largest values.
-   subroutine add_step(lines, interfaces, record)
-      type(string_type), allocatable, intent(inout) :: lines(:)
-      type(contact_points_type), intent(in) :: interfaces(:)
-      type(increment_record_type), intent(in) :: record
-      character(:), allocatable :: zone
-      integer :: i
-
-      if (has_many(size(interfaces))) then
-         call append(lines, step_line(record, [(largest_at(step_quantities(i), record%contacts), &
-            i=1, size(step_quantities))], closed_words(record%contacts)))
-         return
-      end if
-      do i = 1, size(interfaces)
-         zone = zone_words('edge_contact', record%contacts(i))
-         if (zone == '') zone = zones('edge_contact', interfaces(i), record%contacts(i))
-         call append(lines, step_line(record, spread(i, 1, size(step_quantities)), &
-            interfaces(i)%name//': '//zone))
-      end do
-   end subroutine add_step
 
    !> The end of a step: its quantities, each of an interface, and what is closed.
    function step_line(record, interface_of, closed) result(line)
