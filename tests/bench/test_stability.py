@@ -1,15 +1,12 @@
 """The theme of *STABILITY: instructions of an analysis over those of ten increments."""
 
-import os
 import re
-import shutil
 
 import report  # isort: skip, it makes the modules below known
 import h5py
-import pytest
 from deck_runs import COUPLED, CYLINDER, INPUT
 from document import Table
-from instructions import profile
+from instructions import SOURCES, procedures, profile
 
 TITLE = "Analysis of stability"
 TEXT = """
@@ -65,10 +62,9 @@ def tables(folder):
     return [table]
 
 
-@pytest.mark.skipif(
-    os.environ.get("THERCON_BUILD_TYPE", "Release") != "Release" or not shutil.which("valgrind"),
-    reason="instructions are those of a release build under valgrind")
-def test_an_analysis_and_increments_have_instructions(tmp_path):
-    path = deck(tmp_path, "two rods of four elements")
-    counts = profile("run", "--quiet", path, "--out", tmp_path, path=tmp_path / "profile")
-    assert min(costs(counts, path.with_suffix(".vtkhdf"))) > 0
+def test_what_is_counted_is_called_from_other_modules():
+    """Calls within a module are not counted."""
+    users = "\n".join(path.read_text() for path in SOURCES.rglob("*.f90"))
+    for module, procedure in (("growing_modes", "analyse_stability"), ("increments", "advance")):
+        assert procedure in procedures(module)
+        assert re.search(rf"^ *use {module}, only: .*\b{procedure}\b", users, re.M)

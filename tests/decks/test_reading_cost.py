@@ -23,13 +23,13 @@ CARDS = {
 
 
 def seconds(path, model, step, count):
-    """Return the least CPU time of a few checks of a deck with so many cards."""
+    """Return the least CPU time of two checks of a deck with so many cards."""
     model, step = ("".join(text.replace("n", str(k)) for k in range(count)).replace("|", "\n")
                    for text in (model, step))
     path.write_text("\n".join([*MESH, model + HELD[0], *HELD[1:], "*STEP", "*STATIC", "1., 1.",
                                step + "*END STEP", ""]))
     used = []
-    for _ in range(3):
+    for _ in range(2):
         before = resource.getrusage(resource.RUSAGE_CHILDREN).ru_utime
         process = run("check", "--quiet", path)
         assert process.returncode == 0, process.stderr[:400]

@@ -35,15 +35,25 @@ inside() {
       chroot "$base" /bin/bash -c 'cd /thercon && exec "$@"' bash "$@"
 }
 
-# The mirror and the settings of the network are those of this machine.
+# The mirror and the settings of the network are those of this machine. The system is in memory where
+# there is enough of it, and without texts that nobody reads here.
 make_base() {
-   local mirror
+   local mirror available
+   mkdir -p "$base"
+   available=$(awk '$1 == "MemAvailable:" {print int($2 / 1024)}' /proc/meminfo)
+   ((available < 8000)) || mount -t tmpfs -o size=4G,mode=755 tmpfs "$base"
    mirror=$(apt-get indextargets --format '$(REPO_URI)' 'Label: Debian' | head -n 1)
    debootstrap --variant=minbase trixie "$base" ${mirror:+"$mirror"} >"$base.log" 2>&1 ||
       skip "debootstrap: $(tail -n 1 "$base.log")"
    mount -t proc proc "$base/proc"
-   apt-config dump | grep '^Acquire::' >"$base/etc/apt/apt.conf.d/host"
-   printf 'force-unsafe-io\n' >"$base/etc/dpkg/dpkg.cfg.d/host"
+   {
+      apt-config dump | grep '^Acquire::'
+      printf 'Acquire::Languages "none";\n'
+   } >"$base/etc/apt/apt.conf.d/host"
+   {
+      printf 'force-unsafe-io\n'
+      printf 'path-exclude=/usr/share/%s/*\n' doc info locale man
+   } >"$base/etc/dpkg/dpkg.cfg.d/host"
    [[ ! -e /etc/pip.conf ]] || cp /etc/pip.conf "$base/etc"
    if [[ -e $certificates ]]; then
       trusted=/etc/certificates.crt # its own name is that of a package's file
@@ -53,7 +63,7 @@ make_base() {
    tar --directory "$tree" --exclude ./build --exclude ./.git --create . |
       tar --directory "$base/thercon" --extract --no-same-owner
    # All but the kernels without optimisation, which takes the compiler less than half of the time.
-   sed --in-place 's/-O1/-O0/' "$base/thercon/cmake/DefaultFlags.cmake"
+   sed --in-place 's/-O1 -g1/-O0/' "$base/thercon/cmake/DefaultFlags.cmake"
    grep -q -e '"-O0 ' "$base/thercon/cmake/DefaultFlags.cmake"
 }
 
@@ -71,7 +81,7 @@ set_up() {
 
 TIMEFORMAT='   %R s, of processors %U + %S s'
 rm -rf --one-file-system "$base"
-trap 'umount "$base/proc" 2>/dev/null || true; rm -rf --one-file-system "$base" "$base.log"' EXIT
+trap 'umount "$base/proc" "$base" 2>/dev/null || true; rm -rf --one-file-system "$base" "$base.log"' EXIT
 printf 'base system of Debian 13\n'
 time make_base
 printf './setup.sh cylinder\n'

@@ -31,8 +31,8 @@ class Run:
 
 
 def solve(folder, name, method="NEWTON", levels=0, increments=45, cards=(), changes=()):
-    """Solve a deck in so many increments, refined without estimates of its errors; one that stops
-    must say why."""
+    """Solve a deck in so many increments, without estimates of its errors; one that stops must say
+    why."""
     text = DECKS[name].read_text()
     text = text[: text.index("*VERIFY")]
     text = re.sub(r"\*FIXED POINT, METHOD=\w+", f"*FIXED POINT, METHOD={method}", text)
@@ -41,8 +41,9 @@ def solve(folder, name, method="NEWTON", levels=0, increments=45, cards=(), chan
                      **dict(changes)}.items():
         assert old in text, old
         text = text.replace(old, new)
+    cards = ["*OPTIONS, ERRORS=NO", *cards]
     if levels:
-        cards = [f"*REFINE, LEVELS={levels}", "*OPTIONS, ERRORS=NO", *cards]
+        cards = [f"*REFINE, LEVELS={levels}", *cards]
     deck = folder / f"{name}.inp"
     deck.write_text(text.replace("*STEP", "".join(f"{card}\n" for card in cards) + "*STEP", 1))
     process = run("run", "--quiet", deck, "--out", folder)
