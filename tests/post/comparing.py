@@ -10,17 +10,9 @@ import pytest
 POST = Path(__file__).resolve().parents[2] / "post"
 sys.path.insert(0, str(POST.parent / "python"))
 
-from thercon.post import style  # noqa: E402
 from thercon.post.comparison.cli import main  # noqa: E402
 
 CALCULIX = Path(__file__).resolve().parent / "calculix"
-
-
-@pytest.fixture(autouse=True)
-def coarse_pictures(monkeypatch):
-    """Draw few dots: the tests look at what is written, not at the pictures."""
-    monkeypatch.setitem(style.SETTINGS, "savefig.dpi", 50)
-    monkeypatch.setitem(style.SETTINGS, "savefig.bbox", None)
 
 
 @pytest.fixture

@@ -11,17 +11,26 @@ from synthetic import write_result
 
 def pytest_configure(config):
     config.addinivalue_line("markers", "changes(*cards): of tests/decks")
+    config.addinivalue_line("markers", "vectors: looks into pictures as .svg, which are left empty else")
 
 
 @pytest.fixture(autouse=True)
-def coarse_pictures(monkeypatch):
-    """Draw few dots: the tests look at what is written, not at the pictures."""
-    if "thercon.post.fields" in sys.modules:
-        from thercon.post import fields, style
+def coarse_pictures(request, monkeypatch):
+    """Draw few dots, and once: the tests look at what is written, not at the pictures."""
+    if "thercon.post.style" not in sys.modules:
+        return
+    from matplotlib.figure import Figure
+    from thercon.post import style
 
-        monkeypatch.setitem(style.SETTINGS, "savefig.dpi", 50)
-        monkeypatch.setitem(style.SETTINGS, "savefig.bbox", None)
-        monkeypatch.setattr(fields, "FINE_CELLS", 1000)
+    monkeypatch.setitem(style.SETTINGS, "savefig.dpi", 50)
+    monkeypatch.setitem(style.SETTINGS, "savefig.bbox", None)
+    if "thercon.post.fields" in sys.modules:
+        monkeypatch.setattr(sys.modules["thercon.post.fields"], "FINE_CELLS", 1000)
+    if request.node.get_closest_marker("vectors") is None:
+        save = Figure.savefig
+        monkeypatch.setattr(Figure, "savefig", lambda figure, path, **options:
+                            path.write_text("not drawn") if path.suffix == ".svg"
+                            else save(figure, path, **options))
 
 
 @pytest.fixture(scope="module")

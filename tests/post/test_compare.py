@@ -7,7 +7,6 @@ import numpy as np
 import pytest
 from comparing import (  # noqa: F401  fixtures
     blocks_of,
-    coarse_pictures,
     compare,
     line_of,
     refused,

@@ -18,7 +18,6 @@ import pytest
 from comparing import (  # noqa: F401  fixtures
     CALCULIX,
     POST,
-    coarse_pictures,
     compare,
     line_of,
     refused,

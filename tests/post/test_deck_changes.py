@@ -33,6 +33,7 @@ def words_of(path):
         return changed(result)
 
 
+@pytest.mark.vectors
 def test_a_deck_that_changed_after_its_result_is_named(rods, capsys):
     result = "results/r2.vtkhdf"
     assert plot(["profiles", result.removesuffix(".vtkhdf")]) == 0 and not capsys.readouterr().err

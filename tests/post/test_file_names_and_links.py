@@ -78,6 +78,7 @@ def test_a_mistake_of_the_program_is_told_in_one_line_or_in_full(result):
     assert status == 1 and said.startswith(b"Traceback") and b"planted" in said
 
 
+@pytest.mark.vectors
 def test_texts_in_pictures_are_text(tmp_path, capsys, monkeypatch):
     """Of units, loads, contacts and files: no element but those of matplotlib, no handler."""
     save = Figure.savefig

@@ -17,7 +17,6 @@ TESTS = Path(__file__).resolve().parents[1]
 sys.path[:0] = [str(TESTS / each) for each in ("decks", "reference")] + [str(TESTS.parent / "python")]
 
 from browser import Browser  # noqa: E402
-from comparing import coarse_pictures  # noqa: E402, F401  a fixture
 from physics import material, mesh  # noqa: E402
 from synthetic import write_result  # noqa: E402
 from test_prints import BODY, HELD, static  # noqa: E402

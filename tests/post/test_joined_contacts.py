@@ -13,7 +13,6 @@ sys.path[:0] = [str(TESTS / "decks"), str(TESTS.parent / "python")]
 
 from blocks import without_unused_surfaces, write  # noqa: E402
 from matplotlib.collections import QuadMesh  # noqa: E402
-from comparing import coarse_pictures  # noqa: E402, F401  fixture
 from deck_runs import solve, solve_as_written  # noqa: E402
 from pellets import rod  # noqa: E402
 from physics import material, mesh  # noqa: E402
@@ -52,7 +51,6 @@ def test_points_of_all_interfaces_follow_each_other_along_the_rod(result):
         assert edges == pytest.approx(own, nan_ok=True)
 
 
-@pytest.mark.usefixtures("coarse_pictures")
 def test_zones_and_profiles_of_all_interfaces_are_one_picture_each(result, tmp_path, capsys):
     for picture in ("zones", "profiles"):
         assert plot([picture, str(result), "--contact", "W*", "--out", str(tmp_path), "--csv"]) == 0
@@ -90,7 +88,6 @@ def test_places_are_joined_and_forces_summed_with_as_many_increments_as_contact_
         assert set(joined.totals()) == {"normal_force", "edge_contact", "edge_stick", "peak_pressure"}
 
 
-@pytest.mark.usefixtures("coarse_pictures")
 @pytest.mark.parametrize("picture", ["zones", "profiles", "courses"])
 def test_pictures_are_drawn_with_as_many_increments_as_contact_points(tmp_path, picture):
     path = write_stack(tmp_path / "stack.vtkhdf", ("A1", "A2"), columns=7)
@@ -167,7 +164,6 @@ def test_tables_of_several_interfaces_name_the_one_of_each_contact_point(tmp_pat
                 assert table[place][rows] == pytest.approx(np.tile(one.contact(name)[place], one.increments))
 
 
-@pytest.mark.usefixtures("coarse_pictures")
 def test_results_with_other_interfaces_and_digitised_figures_are_refused(tmp_path, capsys):
     two = write_stack(tmp_path / "two.vtkhdf", ("A1", "A2"))
     three = write_stack(tmp_path / "three.vtkhdf", ("A1", "A2", "A3"))

@@ -12,7 +12,7 @@ import numpy as np
 import pytest
 from program import increments_in, run, start, write_deck
 
-KILLS = 12
+KILLS = 8
 MOST_TRIES = 400
 POLL_SECONDS = 0.0005
 STEPS = 6

@@ -591,6 +591,7 @@ def test_the_rounds_of_a_requested_accuracy_are_told(synthetic):
     assert "Rounds of the" not in synthetic().read_text()
 
 
+@pytest.mark.vectors
 def test_increments_without_an_uncertainty_say_so(synthetic, browser, tmp_path, monkeypatch):
     """On the page and in pictures: a requested accuracy looks at the ends of steps."""
     save = Figure.savefig

@@ -14,7 +14,6 @@ TESTS = Path(__file__).resolve().parents[1]
 sys.path[:0] = [str(TESTS / each) for each in ("decks", "reference")] + [str(TESTS.parent / "python")]
 
 import rod_modes  # noqa: E402
-from comparing import coarse_pictures  # noqa: E402, F401  a fixture
 from test_stability import BRANCHES, MIDDLE, middle, solved, stability_of  # noqa: E402
 
 from thercon.post.cli import main as plot  # noqa: E402

@@ -13,7 +13,7 @@ sys.path[:0] = [str(TESTS / "decks"), str(TESTS.parent / "python")]
 
 import calculix  # noqa: E402
 import transients as two  # noqa: E402
-from comparing import coarse_pictures, compare, line_of  # noqa: E402, F401  fixtures
+from comparing import compare, line_of  # noqa: E402, F401  fixtures
 from deck_runs import solve  # noqa: E402
 
 from thercon.post.cli import main as plot  # noqa: E402
