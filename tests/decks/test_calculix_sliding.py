@@ -40,7 +40,7 @@ def pad():
 
 def roller():
     """Return a round slider without friction."""
-    side = 0.05
+    side = 0.1
 
     def curved(x, y):
         low = 10.0 - sqrt(100.0 - x * x)
