@@ -11,7 +11,7 @@ from synthetic import write_result
 
 def pytest_configure(config):
     config.addinivalue_line("markers", "changes(*cards): of tests/decks")
-    config.addinivalue_line("markers", "vectors: looks into pictures as .svg, which are left empty else")
+    config.addinivalue_line("markers", "vectors: reads .svg, which are not drawn else")
 
 
 @pytest.fixture(autouse=True)

@@ -62,8 +62,8 @@ def smooth_and_sharp(folder):
 
 
 def hysteresis(folder, most=POINTS):
-    """Return the table of the twin's folds, and the last result of a whole branch; most are the points
-    of a branch."""
+    """Return the table of the twin's folds, and the last result of a whole branch, of so many points
+    at most."""
     table = Table("A twin with a hysteresis", [
         "elements halved", "upper fold", "order", "lower fold", "pairs of folds above it",
         "widest pair", "verdict"], text=f"""The coupled twin of input/cylinder has one state at every load. With the expansions of both bodies exchanged, the cylinder lifted by 0.006 and no friction, heat closes the gap that it crosses, and states lie between two folds (picture below, of elements halved twice; they are linear). The upper fold is where the open bodies snap together. Its load converges with the order of the elements, 2, to the {LIMIT} of quadratic elements on a mesh refined twice. From the lower fold on contact points of the closed bodies close one after the other as the load grows, each in a pair of folds of its own. With half the elements there are about twice as many pairs, and the widest is half as wide: they belong to the mesh and vanish with its elements. The lower fold is the first of them, where few points are closed. Its load moves by -4 % and 5 % from mesh to mesh: it does not converge on these meshes, and nothing but its size is known.""")
