@@ -35,8 +35,8 @@ inside() {
       chroot "$base" /bin/bash -c 'cd /thercon && exec "$@"' bash "$@"
 }
 
-# The mirror and the settings of the network are those of this machine. The system is in memory where
-# there is enough of it, and without texts that nobody reads here.
+# The mirror and the settings of the network are those of this machine. The system is in memory
+# where there is enough of it, and without texts that nobody reads here.
 make_base() {
    local mirror available
    mkdir -p "$base"
@@ -81,7 +81,11 @@ set_up() {
 
 TIMEFORMAT='   %R s, of processors %U + %S s'
 rm -rf --one-file-system "$base"
-trap 'umount "$base/proc" "$base" 2>/dev/null || true; rm -rf --one-file-system "$base" "$base.log"' EXIT
+clean_up() {
+   umount "$base/proc" "$base" 2>/dev/null || true
+   rm -rf --one-file-system "$base" "$base.log"
+}
+trap clean_up EXIT
 printf 'base system of Debian 13\n'
 time make_base
 printf './setup.sh cylinder\n'
