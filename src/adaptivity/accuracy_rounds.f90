@@ -10,7 +10,7 @@
 !> that has no limit has none whatever the changes are; where it is at a corner, no round is spent
 !> on it.
 module accuracy_rounds
-   use, intrinsic :: ieee_arithmetic, only: ieee_is_nan, ieee_quiet_nan, ieee_value
+   use, intrinsic :: ieee_arithmetic, only: ieee_is_nan
    use accuracy_targets, only: accuracy_request_type
    use contact_definitions, only: brings_friction
    use contact_extents, only: contact_width, is_end_of_face, peak_is_at_end, spacing_at
@@ -21,7 +21,7 @@ module accuracy_rounds
    use no_estimates, only: at_corner, grows, no_reason, of_axis, of_path, of_sliding, &
       reason_of_run, remains, slides_far
    use quantity_types, only: find_quantity, quantity_type
-   use records, only: contact_record_type, increment_record_type, uncertainty_type
+   use records, only: increment_record_type, uncertainty_type
    use text, only: to_text
    use uncertainty_rule, only: uncertainty_parts
    implicit none

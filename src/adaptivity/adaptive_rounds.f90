@@ -16,7 +16,6 @@ module adaptive_rounds
    use contact_extents, only: closed_length, point_before, spacing_at
    use contact_points, only: contact_points_type
    use contact_quantities, only: estimated
-   use contact_system, only: contact_open
    use element_kinds, only: element_corner_count, side_node_count
    use error_estimator, only: error_estimator_type
    use errors, only: error_type
@@ -28,7 +27,6 @@ module adaptive_rounds
    use mesh, only: mesh_type
    use model, only: model_type
    use no_estimates, only: at_corner
-   use quantity_types, only: quantity_type
    use records, only: contact_record_type, increment_record_type
    use restarts, only: keep_restart
    use simulation, only: simulation_type

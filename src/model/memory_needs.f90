@@ -55,6 +55,7 @@ contains
       integer, intent(in) :: order            !! 1 where midside nodes are to be dropped, else 2
       real(dp) :: bytes                       !! [byte]
       real(dp) :: entries, factors, nodes, points, written
+      type(sparse_matrix_type) :: lower
       integer, allocatable :: kinds(:)
       integer :: i, solver
       logical :: has_finer_mesh, heat, mechanics
@@ -88,8 +89,14 @@ contains
       if (solver == solver_mumps) then
          factors = mumps_factor*(dissected(2*nodes, mechanics) + dissected(nodes, heat))
       else
-         factors = (merge(4, 0, mechanics) + merge(1, 0, heat))*profile(model, kinds, points, &
-            levels)
+         ! Entries of the skyline of one unknown a node, with the columns of the contact points.
+         lower = node_graph(model, kinds)
+         associate (position => profile_order(adjacency(lower, [(i, i=1, lower%row_count)])))
+            factors = sum([(i, i=1, size(position))] - first_rows(lower, position) + 1.0_dp)* &
+               8.0_dp**levels
+            factors = (merge(4, 0, mechanics) + merge(1, 0, heat))*(factors + &
+               points*size(position)*4.0_dp**levels)
+         end associate
       end if
       bytes = bytes + real_bytes*factors
       if (has_finer_mesh) bytes = bytes + finer*real_bytes*factors
@@ -113,23 +120,6 @@ contains
       dissected = 0.0_dp
       if (is_solved) dissected = 7.75_dp*unknowns*log(max(unknowns, 2.0_dp))/log(2.0_dp)
    end function dissected
-
-   !> Entries of the skyline of one unknown a node, with the columns of the contact points, after
-   !> refinement.
-   real(dp) function profile(model, kinds, points, levels) result(entries)
-      type(model_type), intent(in) :: model
-      integer, intent(in) :: kinds(:), levels
-      real(dp), intent(in) :: points
-      type(sparse_matrix_type) :: lower
-      integer :: i
-
-      lower = node_graph(model, kinds)
-      associate (position => profile_order(adjacency(lower, [(i, i=1, lower%row_count)])))
-         entries = sum([(i, i=1, size(position))] - first_rows(lower, position) + 1.0_dp)* &
-            8.0_dp**levels
-         entries = entries + points*size(position)*4.0_dp**levels
-      end associate
-   end function profile
 
    !> Nodes that are joined by an element, lower triangle with its diagonal.
    function node_graph(model, kinds) result(lower)

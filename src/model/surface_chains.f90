@@ -111,6 +111,7 @@ contains
       logical, intent(inout) :: is_left(:)      ! (sides) loses those of the line
       type(surface_chain_type) :: chain
       logical :: is_own(size(is_left))
+      real(dp) :: extent
       integer :: first, i, n, side
 
       n = size(sides, 1)
@@ -125,7 +126,17 @@ contains
       chain%side_nodes = n
       chain%closed = side == begin
       first = begin
-      if (chain%closed) first = first_corner(mesh%coordinates(:, sides(1, :)), is_own)
+      if (chain%closed) then
+         ! The corner that precedes all others.
+         associate (x => mesh%coordinates(:, sides(1, :)))
+            extent = maxval([(maxval(x(i, :), mask=is_own) - minval(x(i, :), mask=is_own), &
+               i=1, 2)])
+            first = findloc(is_own, .true., dim=1)
+            do i = first + 1, size(is_own)
+               if (is_own(i) .and. precedes(x(:, i), x(:, first), extent)) first = i
+            end do
+         end associate
+      end if
       allocate (chain%nodes((n - 1)*count(is_own) + 1))
       side = first
       do i = 1, count(is_own)
@@ -143,20 +154,6 @@ contains
          end if
       end associate
    end function chain_from
-
-   !> The one of some points that precedes all others.
-   pure integer function first_corner(x, is_one) result(first)
-      real(dp), intent(in) :: x(:, :)           ! (2, n) [length]
-      logical, intent(in) :: is_one(:)          ! (n)
-      real(dp) :: extent
-      integer :: i
-
-      extent = maxval([(maxval(x(i, :), mask=is_one) - minval(x(i, :), mask=is_one), i=1, 2)])
-      first = findloc(is_one, .true., dim=1)
-      do i = first + 1, size(is_one)
-         if (is_one(i) .and. precedes(x(:, i), x(:, first), extent)) first = i
-      end do
-   end function first_corner
 
    !> Puts lines in the order of where they begin.
    subroutine sort_chains(mesh, chains)

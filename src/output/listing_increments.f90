@@ -278,7 +278,7 @@ contains
       type(uncertainty_type), intent(in) :: errors(:)      !! (history_estimated)
       character(maxval(len_trim(history_estimated%name))) :: names(size(history_estimated))
 
-      names = history_estimated%name
+      names = history_estimated%name(:len(names))
       where (ieee_is_nan(errors%value)) names = ''
       if (any(names /= '')) call print_table(page, 'THE INCREMENT', names, errors)
    end subroutine print_history_uncertainties
@@ -293,7 +293,7 @@ contains
       character(len('largest ') + maxval(len_trim(maxima%label))) :: names(size(maxima))
       integer :: q
 
-      names = 'largest '//maxima%label
+      names = 'largest '//maxima%label(:len(names) - len('largest '))
       where (errors%node == 0) names = ''
       if (any(errors%node > 0)) call print_table(page, 'BODY '//to_text(body), names, errors%maxima)
       do q = 1, size(maxima)

@@ -5,7 +5,7 @@ module deck_preparation
    use cards, only: cards_type
    use command_line, only: command_run, command_type
    use contact_definitions, only: pairing_surfaces
-   use connections, only: connections_type, contact_laws_type, laws_of_step
+   use connections, only: contact_laws_type, laws_of_step
    use contact_quantities, only: estimated
    use deck_builder, only: build_model
    use deck_origins, only: find_origin, reads_restart

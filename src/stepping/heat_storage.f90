@@ -18,7 +18,6 @@ module heat_storage
    use kinds, only: dp
    use model, only: model_type
    use records, only: increment_record_type
-   use reduced_bodies, only: reduced_bodies_type
    use simulation, only: simulation_type
    use solution_state, only: solution_state_type
    implicit none

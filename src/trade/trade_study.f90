@@ -102,8 +102,9 @@ contains
    !> the targets before it, in all quantities in which some row does.
    pure subroutine judge_rows(trade)
       type(trade_type), intent(inout) :: trade   !! with the errors of its rows
-      logical :: meets(size(trade%rows)), is_known(quantity_count), is_reachable(quantity_count)
-      real(dp) :: least(quantity_count)
+      logical, dimension(size(trade%rows)) :: is_best, meets
+      logical, dimension(quantity_count) :: is_known, is_reachable
+      real(dp) :: errors(size(trade%rows)), least(quantity_count)
       character(:), allocatable :: words
       integer :: k, q, i
 
@@ -117,8 +118,17 @@ contains
             is_reachable = is_known .and. least <= targets(k)
             meets = meets .and. [(all(rows(i)%errors <= targets(k) .or. .not. is_reachable), &
                i=1, size(rows))]
-            if (any(is_reachable) .and. any(meets)) rows(cheapest(rows, meets))% &
-               is_recommended(k) = .true.
+            if (any(is_reachable) .and. any(meets)) then
+               ! Of those that cost the same the most accurate one, of these the deck as written or
+               ! the first.
+               is_best = meets .and. rows%cpu_seconds <= minval(rows%cpu_seconds, mask=meets) + &
+                  same_time
+               errors = rounded(max(rows%worst, negligible))
+               is_best = is_best .and. errors <= minval(errors, mask=is_best)
+               i = findloc(is_best .and. rows%is_default, .true., dim=1)
+               if (i == 0) i = findloc(is_best, .true., dim=1)
+               rows(i)%is_recommended(k) = .true.
+            end if
             words = ''
             do q = 1, quantity_count
                if (is_reachable(q) .or. .not. is_known(q)) cycle
@@ -147,22 +157,6 @@ contains
       optimal = count .and. [(.not. any(count .and. (costs <= costs(i) + same_time .and. errors < &
          errors(i) .or. costs < costs(i) - same_time .and. errors <= errors(i))), i=1, size(costs))]
    end function are_optimal
-
-   !> The cheapest of some rows; of those that cost the same the most accurate one, of these the
-   !> deck as written or the first.
-   pure integer function cheapest(rows, takes_part) result(best)
-      type(trade_row_type), intent(in) :: rows(:)
-      logical, intent(in) :: takes_part(:)    !! at least one
-      logical :: candidates(size(rows))
-      real(dp) :: errors(size(rows))
-
-      candidates = takes_part .and. rows%cpu_seconds <= minval(rows%cpu_seconds, &
-         mask=takes_part) + same_time
-      errors = rounded(max(rows%worst, negligible))
-      candidates = candidates .and. errors <= minval(errors, mask=candidates)
-      best = findloc(candidates .and. rows%is_default, .true., dim=1)
-      if (best == 0) best = findloc(candidates, .true., dim=1)
-   end function cheapest
 
    !> The rows on one mesh: elements by increments; with levels at the contact faces, some with the
    !> deck's elements. Factors that do not change the increments of the deck are left out.
