@@ -36,7 +36,7 @@ contains
    subroutine choose_neighbours(model, chosen)
       type(model_type), intent(in) :: model
       logical, intent(inout) :: chosen(:)                  !! (elements) those that are divided
-      integer, allocatable :: together(:, :)
+      integer, allocatable :: small(:, :), together(:, :)
       type(element_sides_type) :: sides
       integer :: i, large
       logical :: is_new
@@ -53,10 +53,9 @@ contains
          ! Those with sides twice as long beside them.
          do i = 1, hanging_count(model%mesh)
             large = sides%elements(1, sides%index_of(coarse_side(model%mesh, i)))
-            associate (small => fine_sides(model%mesh, i))
-               if (chosen(large) .or. .not. (chosen(sides%elements(1, sides%index_of( &
-                  small(:, 1)))) .or. chosen(sides%elements(1, sides%index_of(small(:, 2)))))) cycle
-            end associate
+            small = fine_sides(model%mesh, i)
+            if (chosen(large) .or. .not. (chosen(sides%elements(1, sides%index_of(small(:, 1)))) &
+               .or. chosen(sides%elements(1, sides%index_of(small(:, 2)))))) cycle
             chosen(large) = .true.
             is_new = .true.
          end do

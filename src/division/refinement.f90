@@ -109,7 +109,7 @@ contains
       type(division_type), intent(in) :: division
       type(mesh_type), intent(inout) :: mesh
       real(dp), allocatable :: coordinates(:, :)
-      integer :: child, i, first, k, parent(division%elements_after)
+      integer :: child, i, first, k, nodes(8, 4), parent(division%elements_after)
       integer, allocatable :: children(:, :), divided(:)
       logical :: is_member(division%nodes)
 
@@ -147,12 +147,10 @@ contains
       children(:, :division%elements) = mesh%element_nodes
       do i = 1, division%elements
          if (division%rank(i) == 0) cycle
-         associate (nodes => nodes_of_children(division, mesh%element_kind(i), &
-            mesh%element_nodes(:, i), i))
-            do child = 1, 4
-               children(:, child_element(division, i, child)) = nodes(:, child)
-            end do
-         end associate
+         nodes = nodes_of_children(division, mesh%element_kind(i), mesh%element_nodes(:, i), i)
+         do child = 1, 4
+            children(:, child_element(division, i, child)) = nodes(:, child)
+         end do
       end do
       call move_alloc(children, mesh%element_nodes)
       parent = parents_of(division)
