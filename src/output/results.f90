@@ -500,11 +500,12 @@ contains
                call write_geometry(file, group//'/', interfaces(i:i), model%mesh%node_number)
             end associate
          end do
-         do i = 1, model%mesh%body_count
-            associate (table => self%tables(4 + 2*size(interfaces) + i))
-               if (size(table%sets) > 0) call file%set(table%group, 'label', body_name(model, i))
-            end associate
-         end do
+         if (reason_of_run(model) == no_reason) then
+            do i = 1, model%mesh%body_count
+               call file%set(self%tables(4 + 2*size(interfaces) + i)%group, 'label', body_name( &
+                  model, i))
+            end do
+         end if
          call write_reasons(file, model)
          call file%link('/uncertainty', '/errors')
          call file%create_group('/run')
