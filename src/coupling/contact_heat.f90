@@ -13,6 +13,7 @@ module contact_heat
    use conductance_graph, only: conductance_graph_type
    use conductance_laws, only: conductance
    use dense, only: lu_type, product_of
+   use edge_heat, only: find_heat_by_opening
    use errors, only: check_finite, error_type, set_error, status_no_convergence
    use friction_tangent, only: friction_tangent_type
    use gmres, only: gmres_type
@@ -28,7 +29,7 @@ module contact_heat
    private
    public :: jump_derivatives_type, temperature_jumps, jump_derivatives, heat_by_omega, &
       take_temperatures, settle_conductance, at_own_temperatures, derivative_by_temperature, &
-      changes_by_temperature, changes_by_faces, tail_of_heats, with_temperatures
+      changes_by_temperature, changes_by_faces, find_edge_loads, tail_of_heats, with_temperatures
 
    !> How the unknowns of the tail follow the conductance of each contact point that carries heat.
    type :: jump_derivatives_type
@@ -37,6 +38,8 @@ module contact_heat
       real(dp), allocatable :: heat(:)         !! (n) load of the tail per omega
       !> (points that friction may heat, n) their heat, where it follows
       real(dp), allocatable :: friction_heat(:, :)
+      !> (e) contact points that move edges; what that makes is in e more columns of of_tail
+      integer, allocatable :: at_edge(:)
    end type jump_derivatives_type
 
    integer, parameter :: most_steps = 100            !! solutions of (3.4)
@@ -162,6 +165,43 @@ contains
       call workspace%tail%solve_columns(by_omega%of_tail)
    end subroutine jump_derivatives
 
+   !> What the conductances of contact points, by their coordinates, load the tail with beyond
+   !> heat_by_omega: their openings move edges of contact, and the heat there.
+   subroutine find_edge_loads(bodies, data, workspace, jump, point, load)
+      type(reduced_bodies_type), intent(in) :: bodies
+      type(increment_data_type), intent(in) :: data
+      type(increment_workspace_type), intent(in) :: workspace  !! as the last pass left it
+      real(dp), intent(in) :: jump(:)                         !! (m) T_xi - T_eta [temperature]
+      integer, allocatable, intent(out) :: point(:)           !! (n) contact points
+      real(dp), allocatable, intent(out) :: load(:, :)        !! (thermal tail, n)
+      real(dp), dimension(size(jump)) :: by_omega, coordinate, slope
+      real(dp), allocatable :: heat(:, :), temperature(:)
+      real(dp) :: unknowns(bodies%thermal%map%equations)
+      integer :: k
+
+      associate (map => bodies%thermal%map, graph => workspace%pass%graph)
+         coordinate = workspace%pass%coordinates()
+         slope = graph%derivative(coordinate)
+         by_omega = heat_by_omega(bodies, data, workspace, jump)
+         ! Nodes at edges need no other unknowns.
+         unknowns = 0.0_dp
+         unknowns(map%equations - map%tail + 1:) = workspace%on_tail
+         temperature = map%expand(unknowns, data%heat%given)
+         call find_heat_by_opening(bodies, graph, graph%opening(coordinate), &
+            graph%rests(coordinate) .or. abs(slope) <= 0.0_dp, temperature, point, heat)
+         allocate (load(map%tail, size(point)))
+         do k = 1, size(point)
+            unknowns = map%restrict(heat(:, k))
+            load(:, k) = unknowns(map%equations - map%tail + 1:)/slope(point(k))
+            if (any(workspace%edge%point == point(k))) then
+               associate (own => load(bodies%jump_index(point(k)), k))
+                  own = own - by_omega(point(k))
+               end associate
+            end if
+         end do
+      end associate
+   end subroutine find_edge_loads
+
    !> Load of the tail per conductance of each contact point, 0 where it has no jump.
    pure function heat_by_omega(bodies, data, workspace, jump) result(heat)
       type(reduced_bodies_type), intent(in) :: bodies
@@ -178,16 +218,20 @@ contains
    end function heat_by_omega
 
    !> Unknowns of the thermal tail with heats at the contact points, by the last pass's factors.
-   function tail_of_heats(bodies, workspace, heats) result(of_tail)
+   function tail_of_heats(bodies, workspace, heats, load) result(of_tail)
       type(reduced_bodies_type), intent(in) :: bodies
       type(increment_workspace_type), intent(in) :: workspace  !! as the last pass left it
       real(dp), intent(in) :: heats(:)                        !! (m)
+      real(dp), intent(in), optional :: load(:)               !! (thermal tail) more heat
       real(dp) :: of_tail(bodies%thermal%map%tail, 1)
       integer :: k
 
       of_tail = 0.0_dp
+      if (present(load)) of_tail(:, 1) = load
       do k = 1, size(heats)
-         if (bodies%jump_index(k) > 0) of_tail(bodies%jump_index(k), 1) = heats(k)
+         associate (j => bodies%jump_index(k))
+            if (j > 0) of_tail(j, 1) = of_tail(j, 1) + heats(k)
+         end associate
       end do
       call workspace%tail%solve_columns(of_tail)
    end function tail_of_heats

@@ -352,9 +352,11 @@ contains
          if (sound .and. allocated(workspace%friction%heat)) call follow_friction(bodies, heat, &
             workspace, state, by_omega, load, sound)
          if (sound) then
-            allocate (change(m, n))
+            allocate (change(m, size(load, 2)))
             call opening_changes(bodies, workspace%pass%graph, tangent, state, load, change)
-            derivative(:, active) = change
+            derivative(:, active) = change(:, :n)
+            if (allocated(by_omega%at_edge)) derivative(:, by_omega%at_edge) = &
+               derivative(:, by_omega%at_edge) + change(:, n + 1:)
          else
             deallocate (derivative)
          end if

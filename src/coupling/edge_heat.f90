@@ -215,42 +215,57 @@ contains
       real(dp), intent(in) :: temperature(:)                 !! (nodes)
       integer, allocatable, intent(out) :: point(:)          !! (n) whose opening counts
       real(dp), allocatable, intent(out) :: heat(:, :)       !! (nodes, n) [power/length]
-      type(edge_integral_type), allocatable :: hats(:)
-      real(dp) :: unmoved(size(temperature)), moved(size(opening)), step
-      integer :: k, m
+      type(edge_integral_type), allocatable :: hats(:), unmoved(:)
+      real(dp) :: moved(size(opening)), step
+      integer :: i, k, m
 
       m = size(opening)
-      call find_edge_integrals(bodies, graph%modulus, opening, hats)
-      unmoved = entering(hats, opening)
-      point = pack([(k, k=1, m)], [(any(abs(hats%point - k) <= farthest), k=1, m)] .and. &
+      call find_edge_integrals(bodies, graph%modulus, opening, unmoved)
+      point = pack([(k, k=1, m)], [(any(abs(unmoved%point - k) <= farthest), k=1, m)] .and. &
          .not. resting)
-      allocate (heat(size(temperature), size(point)))
-      do k = 1, size(point)
-         associate (j => point(k))
-            step = small_part*sum(abs(opening(max(j - 1, 1):min(j + 1, m))))
-            moved = opening
-            moved(j) = opening(j) + merge(step, -step, opening(j) > 0.0_dp)
-            call find_edge_integrals(bodies, graph%modulus, moved, hats)
-            heat(:, k) = (entering(hats, moved) - unmoved)/(moved(j) - opening(j))
-         end associate
+      allocate (heat(size(temperature), size(point)), source=0.0_dp)
+      ! Those that no hat reads both of are moved at once.
+      do i = 0, 2*farthest
+         moved = opening
+         do k = 1, size(point)
+            if (modulo(point(k), 2*farthest + 1) /= i) cycle
+            associate (j => point(k))
+               step = small_part*sum(abs(opening(max(j - 1, 1):min(j + 1, m))))
+               moved(j) = opening(j) + merge(step, -step, opening(j) > 0.0_dp)
+            end associate
+         end do
+         if (.not. any(abs(moved - opening) > 0.0_dp)) cycle
+         call find_edge_integrals(bodies, graph%modulus, moved, hats)
+         call add_entering(hats, moved, 1.0_dp, heat)
+         call add_entering(unmoved, opening, -1.0_dp, heat)
       end do
    contains
-      !> Heat that enters the nodes by the hats at edges.
-      pure function entering(integrals, at) result(sums)
+      !> Adds the heat that enters the nodes by the hats at edges, for each opening that is moved.
+      pure subroutine add_entering(integrals, at, factor, sums)
          type(edge_integral_type), intent(in) :: integrals(:)
          real(dp), intent(in) :: at(:)                       ! (m) openings
-         real(dp) :: sums(size(temperature))
+         real(dp), intent(in) :: factor
+         real(dp), intent(inout) :: sums(:, :)               ! (nodes, n)
          type(edge_heat_type) :: at_edge
-         real(dp) :: jump(size(integrals))
+         real(dp), dimension(size(integrals)) :: crossing, jump
+         integer :: n, j
 
          at_edge = edge_heat_at(integrals, bodies%points%weight, &
             graph%omega(graph%coordinate_of_opening(at)))
          jump = 0.0_dp
          call at_edge%jump%add_totals(temperature, jump)
-         sums = 0.0_dp
-         call at_edge%jump%add_shares(-heat_across(bodies%points%weight(at_edge%point), &
-            at_edge%conductance, jump), sums)
-      end function entering
+         crossing = heat_across(bodies%points%weight(at_edge%point), at_edge%conductance, jump)
+         do n = 1, size(integrals)
+            do j = 1, size(point)
+               associate (change => moved(point(j)) - opening(point(j)), &
+                  nodes => at_edge%jump%values_of(n))
+                  if (abs(point(j) - at_edge%point(n)) > farthest .or. abs(change) <= 0.0_dp) cycle
+                  sums(nodes, j) = sums(nodes, j) - factor*crossing(n)/change* &
+                     at_edge%jump%coefficients_of(n)
+               end associate
+            end do
+         end do
+      end subroutine add_entering
    end subroutine find_heat_by_opening
 
    !> Whether there is a side of this number, and has an edge.

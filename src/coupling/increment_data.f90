@@ -103,7 +103,7 @@ module increment_data
       type(tail_factors_type) :: tail                !! factors of (3.4) for the last omega*
       real(dp), allocatable :: on_tail(:)            !! (thermal tail) their last solution
       logical :: resolves_edge = .false.             !! whether heat is integrated to the edges
-      type(edge_integral_type), allocatable :: edge_integrals(:)   !! of the last openings
+      type(edge_integral_type), allocatable :: edge_integrals(:)   !! of a pass
       type(edge_heat_type) :: edge                   !! heat at edges, also of the last omega*
       type(contact_workspace_type) :: contact        !! laws and factors of the contact
       type(contact_workspace_type) :: sticking           !! with all closed contact points holding

@@ -4,8 +4,8 @@
 !> there. Without them some increments have no solution, (1.8) asking for a law without a jump.
 module increment_iteration
    use, intrinsic :: ieee_arithmetic, only: ieee_is_finite
-   use contact_heat, only: at_own_temperatures, derivative_by_temperature, jump_derivatives, &
-      jump_derivatives_type
+   use contact_heat, only: at_own_temperatures, derivative_by_temperature, find_edge_loads, &
+      jump_derivatives, jump_derivatives_type
    use contact_operator, only: contact_operator_pass, load_derivative, opening_derivative, &
       openings, residual_floor
    use contact_system, only: closing_law_type, contact_open, contact_slip, contact_state_type
@@ -34,6 +34,8 @@ module increment_iteration
    integer, parameter :: on_path = 10     !! passes with a path, over those of the method itself
    real(dp), parameter :: no_strain = 1.0_dp  !! thermal strain that is none of the small ones
    integer, parameter :: most_away = 5    !! passes with larger ones from which no method returns
+   !> Part of a residual that the next pass leaves, above which steps follow how edges move.
+   real(dp), parameter :: slow = 0.05_dp
    integer, parameter :: fewest_steps = 20   !! passes of Newton's method before another is tried
 
    !> Part of the pressure that the overlap of a whole displacement would make, below which none
@@ -205,10 +207,12 @@ contains
       type(iteration_record_type), allocatable :: passes(:)
       type(contact_state_type) :: good
       integer :: turns(size(trial%next%omega)), away, i
+      logical :: follows_edges
       real(dp) :: wanted
 
       turns = 0
       away = 0
+      follows_edges = .false.
       wanted = controls%tolerance
       allocate (passes(0))
       call begin_passes(bodies, trial%data, trial%next%omega, trial%workspace)
@@ -223,8 +227,12 @@ contains
             if (allocated(error)) exit
             good = next%contact
             pass%iteration = i
-            if (workspace%resolves_edge) workspace%edge = edge_heat_at(workspace%edge_integrals, &
-               bodies%points%weight, pass%omega)
+            if (workspace%resolves_edge) then
+               if (allocated(pass%coordinate)) call find_edge_integrals(bodies, &
+                  pass%graph%modulus, pass%graph%opening(pass%coordinate), workspace%edge_integrals)
+               workspace%edge = edge_heat_at(workspace%edge_integrals, bodies%points%weight, &
+                  pass%omega)
+            end if
             call contact_operator_pass(bodies, heat, data, workspace, next%jump, next%contact, &
                error)
             passes = [passes, iteration_record_type(increment=record%increment, &
@@ -241,6 +249,10 @@ contains
             end if
             call measure_pass(bodies, data, workspace, next, passes(i)%residual)
             wanted = max(controls%tolerance, record%residual_floor)
+            ! Newton's next pass has the edges of its coordinates.
+            if (workspace%resolves_edge .and. (controls%method /= method_newton .or. &
+               passes(i)%residual <= wanted)) call measure_edges(bodies, workspace, &
+               passes(i)%residual)
             if (passes(i)%residual <= wanted) exit
             away = merge(away + 1, 0, runs_away(bodies, next%jump))
             if (away >= merge(1, most_away, accelerator%follows_path)) exit
@@ -248,7 +260,9 @@ contains
                (good%contact_state == contact_open)) turns = turns + 1
             if (controls%method /= method_newton .and. any(turns > most_turns .and. &
                pass%graph%width > 0.0_dp)) exit
-            call take_step(bodies, heat, trial, accelerator)
+            if (i > 2) follows_edges = follows_edges .or. passes(i)%residual > slow* &
+               passes(i - 1)%residual
+            call take_step(bodies, heat, trial, follows_edges, accelerator)
          end do
          call close_passes(record, passes, i, wanted, error)
       end associate
@@ -281,16 +295,22 @@ contains
 
       workspace%pass%opening = openings(bodies, workspace%pass%graph, next%contact)
       call find_residual(data%scales, bodies%points%weight, workspace%pass, residual, next%resting)
-      if (workspace%resolves_edge) then
-         call find_edge_integrals(bodies, workspace%pass%graph%modulus, workspace%pass%opening, &
-            workspace%edge_integrals)
-         residual = max(residual, edge_residual(workspace%edge, edge_heat_at( &
-            workspace%edge_integrals, bodies%points%weight, workspace%pass%image)))
-      end if
       next%omega = merge(workspace%pass%omega, workspace%pass%image, bodies%points%weight > 0.0_dp)
       next%edge = workspace%edge
       workspace%record%residual_floor = residual_floor(bodies, data, workspace%pass, next%contact)
    end subroutine measure_pass
+
+   !> The residual with how far edges of contact are from those that a pass found.
+   subroutine measure_edges(bodies, workspace, residual)
+      type(reduced_bodies_type), intent(in) :: bodies
+      type(increment_workspace_type), intent(inout) :: workspace
+      real(dp), intent(inout) :: residual
+
+      call find_edge_integrals(bodies, workspace%pass%graph%modulus, workspace%pass%opening, &
+         workspace%edge_integrals)
+      residual = max(residual, edge_residual(workspace%edge, edge_heat_at( &
+         workspace%edge_integrals, bodies%points%weight, workspace%pass%image)))
+   end subroutine measure_edges
 
    !> How far the conductances at edges are from those that a pass found.
    pure real(dp) function edge_residual(at_edge, found) result(residual)
@@ -322,10 +342,11 @@ contains
    end subroutine close_passes
 
    !> The next omega*, from the derivative of the pass where the accelerator asks for it.
-   subroutine take_step(bodies, heat, trial, accelerator)
+   subroutine take_step(bodies, heat, trial, follows_edges, accelerator)
       type(reduced_bodies_type), intent(in) :: bodies
       type(heat_reduction_type), intent(in) :: heat
       type(trial_type), intent(inout) :: trial
+      logical, intent(in) :: follows_edges   ! whether the derivative has the edges of contact
       class(accelerator_type), intent(inout) :: accelerator
 
       associate (pass => trial%workspace%pass)
@@ -338,9 +359,9 @@ contains
                type is (newton_type)
                   call accelerator%prepare_step(pass)
                end select
-               call find_newton_step(bodies, heat, trial)
+               call find_newton_step(bodies, heat, trial, follows_edges)
             else
-               call find_derivative(bodies, heat, trial)
+               call find_derivative(bodies, heat, trial, follows_edges)
             end if
          end if
          call accelerator%next(pass)
@@ -349,14 +370,22 @@ contains
    end subroutine take_step
 
    !> Derivative of the openings that the last pass found by the conductances.
-   subroutine find_derivative(bodies, heat, trial)
+   subroutine find_derivative(bodies, heat, trial, follows_edges)
       type(reduced_bodies_type), intent(in) :: bodies
       type(heat_reduction_type), intent(in) :: heat
       type(trial_type), intent(inout) :: trial
+      logical, intent(in) :: follows_edges   ! whether it has the edges of contact
       type(jump_derivatives_type) :: by_omega
+      real(dp), allocatable :: load(:, :)
 
       associate (workspace => trial%workspace, next => trial%next, pass => trial%workspace%pass)
          call jump_derivatives(bodies, trial%data, workspace, next%jump, by_omega)
+         if (follows_edges .and. allocated(workspace%edge%point)) then
+            call find_edge_loads(bodies, trial%data, workspace, next%jump, by_omega%at_edge, load)
+            call workspace%tail%solve_columns(load)
+            by_omega%of_tail = reshape([by_omega%of_tail, load], [size(load, 1), &
+               size(by_omega%of_tail, 2) + size(load, 2)])
+         end if
          call opening_derivative(bodies, heat, workspace, by_omega, next%contact, &
             pass%derivative, pass%body)
          if (bodies%points%vary_with_temperature() .and. allocated(pass%derivative)) then
@@ -385,7 +414,7 @@ contains
          if (allocated(error)) return
          call measure_pass(bodies, data, workspace, next, residual)
          residual = residual/max(data%fixed_point%tolerance, workspace%record%residual_floor)
-         call find_derivative(bodies, heat, trial)
+         call find_derivative(bodies, heat, trial, .false.)
          if (allocated(workspace%pass%derivative)) call load_derivative(bodies, heat, data, &
             next%contact, workspace)
       end associate

@@ -11,7 +11,7 @@
 module newton_products
    use arnoldi, only: arnoldi_type
    use closing_instant, only: make_tangent
-   use contact_heat, only: heat_by_omega, tail_of_heats, with_temperatures
+   use contact_heat, only: find_edge_loads, heat_by_omega, tail_of_heats, with_temperatures
    use contact_operator, only: opening_changes
    use contact_workspace, only: contact_workspace_type
    use friction_tangent, only: friction_tangent_type
@@ -37,6 +37,8 @@ module newton_products
       type(contact_workspace_type) :: contact     !! factors
       real(dp), allocatable :: coordinate(:)      !! (m) z [length]
       real(dp), allocatable :: rate(:)            !! (m) load of the thermal tail per omega
+      integer, allocatable :: at_edge(:)          !! (n) contact points that move edges
+      real(dp), allocatable :: load(:, :)         !! (tail, n) what they load beyond that
       type(friction_tangent_type), allocatable :: friction   !! where it makes heat
    end type opening_tangent_type
 
@@ -45,11 +47,12 @@ contains
    !> The step of the last pass, Newton's or that of a path, and what else the method takes from
    !> there: the contact points' own derivatives and the conductances of the bodies about them. No
    !> step where D does not exist.
-   subroutine find_newton_step(bodies, heat, trial)
+   subroutine find_newton_step(bodies, heat, trial, follows_edges)
       type(reduced_bodies_type), intent(in) :: bodies
       type(heat_reduction_type), intent(in) :: heat
       !> as the pass left it; with tau, which is shortened to where the step leads on
       type(trial_type), intent(inout) :: trial
+      logical, intent(in) :: follows_edges   !! whether J has the edges of contact
       type(opening_tangent_type) :: tangent
       logical :: sound
 
@@ -64,7 +67,10 @@ contains
       associate (pass => trial%workspace%pass)
          tangent%coordinate = pass%coordinates()
          tangent%rate = heat_by_omega(bodies, trial%data, trial%workspace, trial%next%jump)
+         allocate (tangent%at_edge(0), tangent%load(bodies%thermal%map%tail, 0))
          call find_own(bodies, heat, trial, tangent, pass%own, pass%body)
+         if (follows_edges .and. allocated(trial%workspace%edge%point)) call find_edge_loads( &
+            bodies, trial%data, trial%workspace, trial%next%jump, tangent%at_edge, tangent%load)
          if (allocated(pass%path_step)) then
             call step_on_path(bodies, heat, trial, tangent, pass%path_step)
          else
@@ -194,9 +200,9 @@ contains
       real(dp) :: of_opening(size(change)), found(size(change), 1)
       real(dp), allocatable :: of_tail(:, :)
 
-      call find_changes(bodies, heat, trial, tangent, tangent%rate*with_temperatures(bodies, &
-         heat, trial%workspace, tangent%coordinate, tangent%rate, change, tangent%friction), &
-         of_tail, found)
+      call find_changes(bodies, heat, trial, tangent, with_temperatures(bodies, heat, &
+         trial%workspace, tangent%coordinate, tangent%rate, change, tangent%friction), of_tail, &
+         found)
       of_opening = found(:, 1)
    end function by_laws
 
@@ -220,8 +226,8 @@ contains
                start(i + 1) - 1)]
          end do
          do i = 0, maxval(place)
-            call find_changes(bodies, heat, trial, tangent, merge(tangent%rate, 0.0_dp, &
-               place == i), of_tail, change)
+            call find_changes(bodies, heat, trial, tangent, merge(1.0_dp, 0.0_dp, place == i), &
+               of_tail, change)
             do k = 1, size(place)
                if (place(k) /= i .or. abs(tangent%rate(k)) <= 0.0_dp) cycle
                own(k) = change(k, 1)
@@ -235,19 +241,20 @@ contains
       where (body <= 0.0_dp) body = 1.0_dp
    end subroutine find_own
 
-   !> What heats at the contact points make of the thermal tail while the heat of friction stays,
-   !> and of the openings where it follows.
-   subroutine find_changes(bodies, heat, trial, tangent, heats, of_tail, of_opening)
+   !> What conductances make of the thermal tail while the heat of friction stays, and of the
+   !> openings where it follows.
+   subroutine find_changes(bodies, heat, trial, tangent, of_omega, of_tail, of_opening)
       type(reduced_bodies_type), intent(in) :: bodies
       type(heat_reduction_type), intent(in) :: heat
       type(trial_type), intent(in) :: trial
       type(opening_tangent_type), intent(in) :: tangent
-      real(dp), intent(in) :: heats(:)                         ! (m)
+      real(dp), intent(in) :: of_omega(:)                      ! (m)
       real(dp), allocatable, intent(out) :: of_tail(:, :)      ! (thermal tail, 1)
       real(dp), intent(out) :: of_opening(:, :)                ! (m, 1)
       real(dp), allocatable :: load(:, :), with_friction(:, :)
 
-      of_tail = tail_of_heats(bodies, trial%workspace, heats)
+      of_tail = tail_of_heats(bodies, trial%workspace, tangent%rate*of_omega, &
+         matmul(tangent%load, of_omega(tangent%at_edge)))
       load = heat%loads_of_tail(bodies, of_tail)
       if (allocated(tangent%friction)) then
          with_friction = of_tail
