@@ -39,7 +39,7 @@ module mortar_segments
    use kinds, only: dp
    use mortar_sides, only: face_line_type, hats, opposed_shapes, opposed_shapes_type, &
       outward_normals, project, slave_side_type
-   use quadrature, only: gauss_point_10, gauss_weight_10
+   use quadrature, only: gauss_point_10, gauss_point_3, gauss_weight_10, gauss_weight_3
    use shape_functions, only: side_shape, side_slope
    use sparse_matrix, only: sparse_matrix_type, triplet_list_type
    implicit none
@@ -296,18 +296,24 @@ contains
       class(edge_segment_type), intent(in) :: self
       type(edge_profile_type), intent(in), optional :: profile   !! without it: a conductance of 1
       real(dp) :: weights(support, 2)
-      real(dp), allocatable :: ends(:)
+      real(dp), allocatable :: ends(:), point(:), weight(:)
       real(dp) :: cubic(support), t
       integer :: g, i
 
-      ends = self%ends
-      if (present(profile)) ends = graded(self%ends, merge(profile%edge, &
-         1.0_dp - profile%edge, profile%closed_first))
+      if (present(profile)) then
+         ends = graded(self%ends, merge(profile%edge, 1.0_dp - profile%edge, profile%closed_first))
+         point = gauss_point_10
+         weight = gauss_weight_10
+      else
+         ends = self%ends
+         point = gauss_point_3   ! exact
+         weight = gauss_weight_3
+      end if
       weights = 0.0_dp
       do i = 1, size(ends) - 1
-         do g = 1, size(gauss_point_10)
-            t = 0.5_dp*(ends(i) + ends(i + 1) + (ends(i + 1) - ends(i))*gauss_point_10(g))
-            cubic = 0.5_dp*(ends(i + 1) - ends(i))*gauss_weight_10(g)* &
+         do g = 1, size(point)
+            t = 0.5_dp*(ends(i) + ends(i + 1) + (ends(i + 1) - ends(i))*point(g))
+            cubic = 0.5_dp*(ends(i + 1) - ends(i))*weight(g)* &
                cubics((2*t - sum(self%ends))/(self%ends(2) - self%ends(1)))
             if (present(profile)) cubic = cubic*profile%conductance_at(t)
             weights(:, 1) = weights(:, 1) + (1.0_dp - t)*cubic
