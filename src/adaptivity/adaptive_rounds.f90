@@ -66,7 +66,8 @@ module adaptive_rounds
       end subroutine take_increment
    end interface
 
-   real(dp), parameter :: marked = 0.8_dp       !! part of the squared error that is marked
+   !> Part of the squared error that is marked at most; all but half of what a target allows
+   real(dp), parameter :: most_marked = 0.8_dp
    real(dp), parameter :: part = 0.4_dp         !! of a target that the resolution of edges may take
    real(dp), parameter :: reach = 0.5_dp        !! of the contact length: where influence falls
 
@@ -222,7 +223,8 @@ contains
             call mark_edges(self, interfaces(i), edges, max(levels, of_edges))
             weight = influence(q, model%mesh, interfaces(i), record%contacts(i))
             where (largest_part(weight*(squared_errors(model%mesh, record%stress_error) + &
-               squared_errors(model%mesh, record%heat_flux_error)), marked)) of_elements = &
+               squared_errors(model%mesh, record%heat_flux_error)), min(most_marked, 1.0_dp - &
+               0.5_dp*finding%allowed/max(uncertainty, finding%allowed)))) of_elements = &
                max(of_elements, levels)
          end associate
       end do
