@@ -77,7 +77,8 @@ contains
       is_kept = is_bound
       if (allocated(self%is_on_face)) is_kept = is_bound .or. self%is_on_face
       if (allocated(self%is_bound)) then
-         if (all([is_kept, is_prescribed] .eqv. [self%is_bound, self%is_prescribed])) return
+         if (all(is_kept .eqv. self%is_bound) .and. all(is_prescribed .eqv. &
+            self%is_prescribed)) return
       end if
       self%is_bound = is_kept
       self%is_prescribed = is_prescribed

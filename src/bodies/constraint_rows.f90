@@ -79,6 +79,9 @@ module constraint_rows
       real(dp), allocatable, private :: least_of_value(:)
       !> (values) term of each in the sum that is resolved; else 0
       integer, allocatable, private :: term(:)
+      ! Room for the terms of that sum.
+      integer, allocatable, private :: value(:)
+      real(dp), allocatable, private :: coefficient(:)
    end type elimination_type
 
 contains
@@ -119,6 +122,7 @@ contains
       integer :: i, k, n
 
       allocate (found%writer(values), found%entry(values), found%term(values), source=0)
+      allocate (found%value(0), found%coefficient(0))
       allocate (found%linked(rows%count), source=.false.)
       allocate (found%written(rows%count), source=0)
       found%tie = [(is_tie(rows, i), i=1, rows%count)]
@@ -242,42 +246,70 @@ contains
       if (all(found%writer(value) == 0)) return
       scale = maxval(abs(coefficient))
       n = size(value)
+      call make_room(found, n)
+      found%value(:n) = value
+      found%coefficient(:n) = coefficient
       found%term(value) = [(k, k=1, n)]
       do
-         k = minloc(found%writer(value(:n)), mask=found%writer(value(:n)) > 0, dim=1)
+         k = first_written(found, n)
          if (k == 0) exit
-         writer = found%writer(value(k))
-         factor = coefficient(k)
-         found%term(value(n)) = k
-         found%term(value(k)) = 0
-         value(k) = value(n)
-         coefficient(k) = coefficient(n)
+         writer = found%writer(found%value(k))
+         factor = found%coefficient(k)
+         found%term(found%value(n)) = k
+         found%term(found%value(k)) = 0
+         found%value(k) = found%value(n)
+         found%coefficient(k) = found%coefficient(n)
          n = n - 1
          if (abs(factor) <= dropped*scale) cycle
          associate (first => found%sums%start(writer), last => found%sums%start(writer + 1) - 1)
-            if (n + last - first >= size(value)) then
-               value = [value, value, found%sums%value(first:last)]
-               coefficient = [coefficient, coefficient, found%sums%coefficient(first:last)]
-            end if
+            call make_room(found, n + last - first + 1)
             do l = first, last
                associate (term => found%term(found%sums%value(l)))
                   if (term == 0) then
                      n = n + 1
                      term = n
-                     value(n) = found%sums%value(l)
-                     coefficient(n) = 0.0_dp
+                     found%value(n) = found%sums%value(l)
+                     found%coefficient(n) = 0.0_dp
                   end if
-                  coefficient(term) = coefficient(term) + factor*found%sums%coefficient(l)
+                  found%coefficient(term) = found%coefficient(term) + &
+                     factor*found%sums%coefficient(l)
                end associate
             end do
          end associate
       end do
-      found%term(value(:n)) = 0
-      associate (kept => abs(coefficient(:n)) > dropped*scale)
-         value = pack(value(:n), kept)
-         coefficient = pack(coefficient(:n), kept)
+      found%term(found%value(:n)) = 0
+      associate (kept => abs(found%coefficient(:n)) > dropped*scale)
+         value = pack(found%value(:n), kept)
+         coefficient = pack(found%coefficient(:n), kept)
       end associate
    end subroutine resolve
+
+   !> Place of the value that was written first, 0 where none is: without the arrays of minloc.
+   pure integer function first_written(found, terms) result(first)
+      type(elimination_type), intent(in) :: found
+      integer, intent(in) :: terms
+      integer :: k, least
+
+      first = 0
+      least = huge(least)
+      do k = 1, terms
+         associate (writer => found%writer(found%value(k)))
+            if (writer == 0 .or. writer >= least) cycle
+            first = k
+            least = writer
+         end associate
+      end do
+   end function first_written
+
+   !> Makes room for terms of the sum that is resolved.
+   pure subroutine make_room(found, terms)
+      type(elimination_type), intent(inout) :: found
+      integer, intent(in) :: terms
+
+      if (terms <= size(found%value)) return
+      found%value = [found%value, spread(0, 1, terms)]
+      found%coefficient = [found%coefficient, spread(0.0_dp, 1, terms)]
+   end subroutine make_room
 
    !> Rows of degrees of freedom alone to which those before leave less of any than a part of their
    !> largest coefficient. Each writes its choice, else one of the largest.

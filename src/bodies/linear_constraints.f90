@@ -15,10 +15,9 @@
 !> The last unknowns, the tail, are those that contact acts on, and the forces. With the former zero
 !> the bodies are welded; the reduced problem on the tail is eq. (2.4) solved partially.
 module linear_constraints
-   use blas_lapack, only: daxpy
+   use blas_lapack, only: dgemm, dsyr2k
    use constraint_rows, only: constraint_rows_type, elimination_type, largest, least_coefficients, &
       negligible, resolve, row_origin_type, write_values
-   use dense, only: product_of, transposed_product
    use kinds, only: dp
    use sparse_matrix, only: between_spaces, congruent, linear_combination, sparse_matrix_type, &
       triplet_list_type
@@ -37,6 +36,8 @@ module linear_constraints
       logical, allocatable :: acts(:)               !! (introduced) whether contact acts on them
       type(sum_list_type) :: by_unknowns            !! (dofs, equations) T
       type(sum_list_type) :: by_given               !! (dofs, dofs) B
+      !> Degrees of freedom whose rows of T, and of B, have terms: where faces slide, few
+      integer, allocatable, private :: with_unknowns(:), with_given(:)
       type(sum_list_type) :: link_unknowns          !! (links, equations) G
       type(sum_list_type) :: link_given             !! (links, dofs) H
       type(sum_list_type) :: link_dofs              !! (links, dofs) what the rows say of u itself
@@ -75,7 +76,7 @@ contains
       real(dp) :: values(size(given))               !! (dofs)
 
       values = self%supported(given)
-      call self%by_unknowns%add_totals(unknowns, values)
+      call add_rows(self%by_unknowns, self%with_unknowns, unknowns, values)
    end function expand
 
    !> Degrees of freedom by prescribed values alone, B g.
@@ -85,8 +86,32 @@ contains
       real(dp) :: values(size(given))               !! (dofs)
 
       values = 0.0_dp
-      call self%by_given%add_totals(given, values)
+      call add_rows(self%by_given, self%with_given, given, values)
    end function supported
+
+   !> Adds the sums of some rows, which alone have terms.
+   pure subroutine add_rows(sums, rows, x, totals)
+      type(sum_list_type), intent(in) :: sums
+      integer, intent(in) :: rows(:)
+      real(dp), intent(in) :: x(:)
+      real(dp), intent(inout) :: totals(:)
+      integer :: i, k
+
+      do i = 1, size(rows)
+         do k = sums%start(rows(i)), sums%start(rows(i) + 1) - 1
+            totals(rows(i)) = totals(rows(i)) + sums%coefficient(k)*x(sums%value(k))
+         end do
+      end do
+   end subroutine add_rows
+
+   !> Sums that have terms.
+   pure function with_terms(sums) result(rows)
+      type(sum_list_type), intent(in) :: sums
+      integer, allocatable :: rows(:)
+      integer :: i
+
+      rows = pack([(i, i=1, sums%count)], sums%start(2:sums%count + 1) > sums%start(:sums%count))
+   end function with_terms
 
    !> Values with those that prescribed ones are part of made anew, while the others stay. Where an
    !> introduced value is part of one, it takes up the difference.
@@ -121,13 +146,13 @@ contains
       class(linear_constraints_type), intent(in) :: self
       real(dp), intent(in) :: forces(:)             !! (dofs)
       real(dp) :: rhs(self%equations)               !! (equations)
-      integer :: dof, t
+      integer :: i, t
 
       rhs = 0.0_dp
-      associate (by => self%by_unknowns)
-         do dof = 1, size(forces)
-            do t = by%start(dof), by%start(dof + 1) - 1
-               rhs(by%value(t)) = rhs(by%value(t)) + by%coefficient(t)*forces(dof)
+      associate (by => self%by_unknowns, dof => self%with_unknowns)
+         do i = 1, size(dof)
+            do t = by%start(dof(i)), by%start(dof(i) + 1) - 1
+               rhs(by%value(t)) = rhs(by%value(t)) + by%coefficient(t)*forces(dof(i))
             end do
          end do
       end associate
@@ -219,9 +244,9 @@ contains
 
    !> The same of a matrix that pieces of bodies leave between the nodes of faces, where it is full:
    !> T is full, too, where mortar points write the slave's values w by all others. With o for the
-   !> rest, half of T^T A T and half of its transpose are
+   !> rest
    !>
-   !>    T_w^T (A_ww T_w/2 + A_wo T_o) + T_o^T A_oo T_o/2.
+   !>    T^T A T = T_w^T Y + Y^T T_w + T_o^T A_oo T_o,   Y = A_ww T_w/2 + A_wo T_o.
    !>
    !> What no written value is joined to stays sparse.
    pure function transform_kept(self, matrix, stiffness) result(lower)
@@ -229,25 +254,27 @@ contains
       type(sparse_matrix_type), intent(in) :: matrix  !! (dofs, dofs) K', symmetric, both triangles
       real(dp), intent(in) :: stiffness(:)            !! (links) k
       type(sparse_matrix_type) :: lower               !! (equations, equations) by rows
-      real(dp), allocatable :: full(:, :), half(:, :), of_others(:, :), row(:), written_by(:, :)
-      integer, allocatable :: unknown(:), written(:)
-      integer :: column_of(self%equations), i, k, place(matrix%row_count), q, term
-      logical :: is_full(matrix%row_count)
+      real(dp), allocatable :: half(:, :), of_others(:, :), upper(:, :), written_by(:, :)
+      integer, allocatable :: rows(:), unknown(:), written(:)
+      integer :: column_of(self%equations), i, k, other, place(matrix%row_count), q, row, term
+      logical, dimension(matrix%row_count) :: is_full, is_other
 
-      call find_full(self, matrix, is_full, unknown)
+      rows = pack(self%with_unknowns, matrix%row_start(self%with_unknowns + 1) > &
+         matrix%row_start(self%with_unknowns))
+      call find_full(self, matrix, rows, is_full, unknown)
       column_of = 0
       column_of(unknown) = [(i, i=1, size(unknown))]
-      associate (by => self%by_unknowns)
-         written = pack([(i, i=1, by%count)], is_full .and. by%start(2:by%count + 1) - &
-            by%start(:by%count) > most_terms)
+      associate (by => self%by_unknowns, n => size(unknown))
+         written = pack(rows, is_full(rows) .and. by%start(rows + 1) - by%start(rows) > most_terms)
          place = 0
          place(written) = [(i, i=1, size(written))]
-         allocate (half(size(written), size(written)), of_others(size(written), size(unknown)), &
-            written_by(size(written), size(unknown)), source=0.0_dp)
+         allocate (half(size(written), size(written)), of_others(size(written), n), &
+            written_by(size(written), n), source=0.0_dp)
          do q = 1, size(written)
             i = written(q)
-            written_by(q, column_of(by%value(by%start(i):by%start(i + 1) - 1))) = &
-               by%coefficient(by%start(i):by%start(i + 1) - 1)
+            do term = by%start(i), by%start(i + 1) - 1
+               written_by(q, column_of(by%value(term))) = by%coefficient(term)
+            end do
             do k = matrix%row_start(i), matrix%row_start(i + 1) - 1
                associate (j => matrix%column(k))
                   if (place(j) > 0) then
@@ -262,53 +289,70 @@ contains
                end associate
             end do
          end do
-         full = transposed_product(written_by, product_of(half, written_by) + of_others)
-         allocate (row(size(unknown)))
-         do i = 1, by%count
-            if (place(i) > 0 .or. .not. is_full(i)) cycle
-            row = 0.0_dp
-            do k = matrix%row_start(i), matrix%row_start(i + 1) - 1
-               associate (j => matrix%column(k))
-                  if (place(j) > 0 .or. .not. is_full(j)) cycle
-                  do term = by%start(j), by%start(j + 1) - 1
-                     associate (entry => row(column_of(by%value(term))))
-                        entry = entry + 0.5_dp*matrix%value(k)*by%coefficient(term)
-                     end associate
+         allocate (upper(n, n))
+         associate (m => size(written), lead => max(size(written), 1))
+            call dgemm('N', 'N', m, n, m, 1.0_dp, half, lead, written_by, lead, 1.0_dp, &
+               of_others, lead)
+            call dsyr2k('U', 'T', n, m, 1.0_dp, written_by, lead, of_others, lead, 0.0_dp, upper, &
+               max(n, 1))
+         end associate
+         is_other = is_full
+         is_other(written) = .false.
+         do q = 1, size(rows)
+            i = rows(q)
+            if (.not. is_other(i)) cycle
+            do term = by%start(i), by%start(i + 1) - 1
+               associate (last => column_of(by%value(term)), factor => by%coefficient(term))
+                  do k = matrix%row_start(i), matrix%row_start(i + 1) - 1
+                     if (.not. is_other(matrix%column(k))) cycle
+                     do other = by%start(matrix%column(k)), by%start(matrix%column(k) + 1) - 1
+                        row = column_of(by%value(other))
+                        if (row <= last) upper(row, last) = upper(row, last) + &
+                           factor*matrix%value(k)*by%coefficient(other)
+                     end do
                   end do
                end associate
             end do
-            do term = by%start(i), by%start(i + 1) - 1
-               call daxpy(size(row), by%coefficient(term), row, 1, &
-                  full(:, column_of(by%value(term))), 1)
-            end do
          end do
       end associate
-      lower = with_full_part(self%transform(outside(matrix, is_full), stiffness), unknown, full)
+      lower = lower_of(upper, unknown, self%equations)
+      if (all(is_full(rows)) .and. size(self%link_force) == 0) return
+      lower = linear_combination(1.0_dp, lower, 1.0_dp, self%transform(outside(matrix, is_full), &
+         stiffness))
    end function transform_kept
 
    !> The unknowns that written values of a matrix, and those joined to them, are made of, and the
    !> degrees of freedom that are made of these alone.
-   pure subroutine find_full(self, matrix, is_full, unknown)
-      type(linear_constraints_type), intent(in) :: self
+   pure subroutine find_full(self, matrix, rows, is_full, unknown)
+      class(linear_constraints_type), intent(in) :: self
       type(sparse_matrix_type), intent(in) :: matrix
+      integer, intent(in) :: rows(:)                  ! those with entries
       logical, intent(out) :: is_full(:)              ! (dofs)
       integer, allocatable, intent(out) :: unknown(:) ! ascending
       logical :: is_joined(size(is_full)), is_part(self%equations)
-      integer :: i, k
+      integer :: i, k, q
 
       is_joined = .false.
       is_part = .false.
+      is_full = .false.
       associate (by => self%by_unknowns, start => matrix%row_start)
-         do i = 1, size(is_full)
-            if (by%start(i + 1) - by%start(i) > 1) is_joined(matrix%column(start(i): &
-               start(i + 1) - 1)) = .true.
+         do q = 1, size(rows)
+            i = rows(q)
+            if (by%start(i + 1) - by%start(i) <= 1) cycle
+            do k = start(i), start(i + 1) - 1
+               is_joined(matrix%column(k)) = .true.
+            end do
          end do
-         do i = 1, size(is_full)
-            if (is_joined(i)) is_part(by%value(by%start(i):by%start(i + 1) - 1)) = .true.
+         do q = 1, size(rows)
+            i = rows(q)
+            if (.not. is_joined(i)) cycle
+            do k = by%start(i), by%start(i + 1) - 1
+               is_part(by%value(k)) = .true.
+            end do
          end do
-         do i = 1, size(is_full)
-            is_full(i) = start(i + 1) > start(i)
-            if (.not. is_full(i)) cycle
+         do q = 1, size(rows)
+            i = rows(q)
+            is_full(i) = .true.
             do k = by%start(i), by%start(i + 1) - 1
                is_full(i) = is_full(i) .and. is_part(by%value(k))
             end do
@@ -344,49 +388,29 @@ contains
       rest%value = rest%value(:n)
    end function outside
 
-   !> The lower triangle of a matrix, with a full part and its transpose added.
-   pure function with_full_part(lower, places, part) result(total)
-      type(sparse_matrix_type), intent(in) :: lower   ! columns ascend in each row
-      integer, intent(in) :: places(:)                ! (n) rows and columns of the part, ascending
-      real(dp), intent(in) :: part(:, :)              ! (n, n)
-      type(sparse_matrix_type) :: total
-      integer :: column, filled, i, k, n, next, of_lower, of_part
+   !> The lower triangle of a matrix that is full in some rows and columns and has no others.
+   pure function lower_of(upper, places, order) result(lower)
+      real(dp), intent(in) :: upper(:, :)             ! (n, n) upper triangle of what is full
+      integer, intent(in) :: places(:)                ! (n) its rows and columns, ascending
+      integer, intent(in) :: order
+      type(sparse_matrix_type) :: lower
+      integer :: filled, i, last, n
 
-      total%row_count = lower%row_count
-      total%column_count = lower%column_count
-      n = size(lower%value) + size(places)*(size(places) + 1)/2
-      allocate (total%row_start(lower%row_count + 1), total%column(n), total%value(n))
-      total%row_start(1) = 1
+      lower%row_count = order
+      lower%column_count = order
+      n = size(places)
+      allocate (lower%row_start(order + 1), lower%column(n*(n + 1)/2), lower%value(n*(n + 1)/2))
       filled = 0
-      n = 1   ! next row of the part
-      do i = 1, lower%row_count
-         k = lower%row_start(i)
-         next = n + 1
-         if (n <= size(places)) next = merge(1, n + 1, places(n) == i)
-         do while (k < lower%row_start(i + 1) .or. next <= n)
-            of_lower = huge(of_lower)
-            if (k < lower%row_start(i + 1)) of_lower = lower%column(k)
-            of_part = huge(of_part)
-            if (next <= n) of_part = places(next)
-            column = min(of_lower, of_part)
-            filled = filled + 1
-            total%column(filled) = column
-            total%value(filled) = 0.0_dp
-            if (of_part == column) then
-               total%value(filled) = part(n, next) + part(next, n)
-               next = next + 1
-            end if
-            if (of_lower == column) then
-               total%value(filled) = total%value(filled) + lower%value(k)
-               k = k + 1
-            end if
-         end do
-         total%row_start(i + 1) = filled + 1
-         if (n <= size(places)) n = merge(n + 1, n, places(n) == i)
+      last = 0
+      do i = 1, n
+         lower%row_start(last + 1:places(i)) = filled + 1
+         lower%column(filled + 1:filled + i) = places(:i)
+         lower%value(filled + 1:filled + i) = upper(:i, i)
+         filled = filled + i
+         last = places(i)
       end do
-      total%column = total%column(:filled)
-      total%value = total%value(:filled)
-   end function with_full_part
+      lower%row_start(last + 1:) = filled + 1
+   end function lower_of
 
    !> T, its columns in any order.
    pure function terms(self)
@@ -580,7 +604,11 @@ contains
          call links%reserve(size(constraints%link_force), 8*size(constraints%link_force))
          plain = links
          do i = 1, dofs
-            if (found%writer(i) == 0) then
+            if (found%writer(i) == 0 .and. unknown(i) == 0) then
+               ! No sum that renumbered would keep: inside of pieces are many of these.
+               written%count = i
+               written%start(i + 1) = written%start(i)
+            else if (found%writer(i) == 0) then
                call written%add_value(i)
             else
                call resolve(found, found%sums, found%writer(i), value, coefficient)
@@ -597,6 +625,8 @@ contains
          end do
          constraints%by_unknowns = written%renumbered(unknown)
          constraints%by_given = written%renumbered(given)
+         constraints%with_unknowns = with_terms(constraints%by_unknowns)
+         constraints%with_given = with_terms(constraints%by_given)
          constraints%link_unknowns = links%renumbered(unknown)
          constraints%link_given = links%renumbered(given)
          constraints%link_dofs = plain%renumbered(dof)

@@ -60,7 +60,11 @@ module reduced_bodies
       !> (16*materials of the points) of stress by strain, likewise; unallocated for elasticity
       real(dp), allocatable :: tangent(:)
       type(sum_list_type) :: rigid !! (motions, 2 nodes) that the supports leave free
+      !> nodes of no body that contact points took when these motions were found; unallocated where
+      !> supports have changed since
+      integer, allocatable, private :: references(:)
       integer, allocatable :: jump_index(:) !! (m) index of the jump on the tail, 0 where held
+      real(dp), allocatable, private :: stiffness(:, :)   !! as from node_stiffness
       logical :: is_coupled = .false.   !! whether heat depends on the mechanics of the step
       !> (2 nodes) where contact points lie on displaced faces; unallocated where none does [length]
       real(dp), allocatable :: faces_at(:)
@@ -126,6 +130,7 @@ contains
       end if
       call join_points(self%interfaces, self%ties, model, self%points)
       deallocate (self%ties)
+      self%stiffness = node_stiffness(model)
       self%laws = laws_of_step(model, self%points, 1)
       if (allocated(self%laws%wear)) allocate (self%worn(size(self%points%slave)), source=0.0_dp)
       if (has_sparse_tail(model, real(size(self%points%slave), dp)) .or. &
@@ -236,6 +241,7 @@ contains
             heat = any(self%held_temperature .neqv. held_temperature)
          end if
          if (mechanics) then
+            if (allocated(self%references)) deallocate (self%references)
             self%prescribed = prescribed
             self%has_friction = has_friction
          end if
@@ -349,41 +355,67 @@ contains
       logical, intent(in) :: held_temperature(:)             !! (nodes) prescribed temperatures
       logical, intent(in) :: mechanics                       !! whether displacements are numbered
       logical, intent(in) :: heat                            !! whether temperatures are numbered
-      ! gfortran never frees the components of a function's result within an array constructor.
-      type(joint_type), allocatable :: of_bars(:), of_equations(:), of_ties(:)
 
       if (mechanics) then
          self%held_direction = held_directions(self%points, prescribed)
-         of_ties = joints_of(self%points%ties)
-         of_equations = joints_of(self%points%equations)
-         of_bars = joints_of(self%points%elongations)
-         call unsupported_motions(model%mesh, prescribed, [of_ties, of_equations, of_bars], &
-            self%points%references(model%mesh%node_body == 0), self%rigid)
+         call find_motions(self, model, prescribed)
       end if
       associate (points => self%points, used => model%mesh%node_body > 0)
          if (mechanics) then
             call constrain_displacements(used, prescribed, points, &
-               self%laws%friction%coefficient > 0.0_dp, slave_is_stiffer(model, points, .true.), &
-               self%mechanical%map, self%mechanical%division)
+               self%laws%friction%coefficient > 0.0_dp, &
+               slave_is_stiffer(self%stiffness(:, 1), points), self%mechanical%map, &
+               self%mechanical%division)
             self%mechanical%numbering = self%mechanical%numbering + 1
          end if
          if (.not. heat) return
          call constrain_temperatures(used, held_temperature, points, &
-            slave_is_stiffer(model, points, .false.), self%thermal%map, self%thermal%division)
+            slave_is_stiffer(self%stiffness(:, 2), points), self%thermal%map, self%thermal%division)
          self%thermal%numbering = self%thermal%numbering + 1
          self%jump_index = self%thermal%map%tail_index(self%thermal%map%introduced)
       end associate
    end subroutine number
 
+   !> Finds the motions that the supports leave free, where contact points change any.
+   subroutine find_motions(self, model, prescribed)
+      type(reduced_bodies_type), intent(inout) :: self
+      type(model_type), intent(in) :: model
+      logical, intent(in) :: prescribed(:)                   ! (2 nodes)
+      integer, allocatable :: references(:)
+      ! gfortran never frees the components of a function's result within an array constructor.
+      type(joint_type), allocatable :: of_bars(:), of_equations(:), of_ties(:)
+
+      references = self%points%references(model%mesh%node_body == 0)
+      if (allocated(self%references)) then
+         if (size(references) == size(self%references)) then
+            if (all(references == self%references)) return
+         end if
+      end if
+      of_ties = joints_of(self%points%ties)
+      of_equations = joints_of(self%points%equations)
+      of_bars = joints_of(self%points%elongations)
+      call unsupported_motions(model%mesh, prescribed, [of_ties, of_equations, of_bars], &
+         references, self%rigid)
+      call move_alloc(references, self%references)
+   end subroutine find_motions
+
    !> Whether the slave's body is far stiffer, or conducts far better, than the master's. A soft
    !> body is to be written by the stiff one: the other way round its stiffness would be left over
    !> where those of the stiff one cancel, and their rounding with it.
-   pure function slave_is_stiffer(model, points, mechanics) result(stiffer)
-      type(model_type), intent(in) :: model
+   pure function slave_is_stiffer(stiffness, points) result(stiffer)
+      real(dp), intent(in) :: stiffness(:)                   ! (nodes) as from node_stiffness
       type(connections_type), intent(in) :: points
-      logical, intent(in) :: mechanics
       logical :: stiffer(size(points%slave))
-      real(dp) :: stiffness(size(model%mesh%node_number)), own
+
+      ! A rigid master has no stiffness at its reference node: its slave follows.
+      stiffer = stiffness(points%slave) > far*stiffness(points%master) .and. &
+         stiffness(points%master) > 0.0_dp
+   end function slave_is_stiffer
+
+   !> The largest stiffness and conductivity of the elements that have a node, times thickness.
+   pure function node_stiffness(model) result(stiffness)
+      type(model_type), intent(in) :: model
+      real(dp) :: stiffness(size(model%mesh%node_number), 2)
       integer :: e, i
 
       stiffness = 0.0_dp
@@ -391,16 +423,14 @@ contains
          associate (section => model%sections(model%mesh%element_section(e)), &
             nodes => model%mesh%element_nodes(:element_node_count(model%mesh%element_kind(e)), e))
             associate (material => model%materials(section%material))
-               own = maxval([(material%elasticity(i, i), i=1, 4)])
-               if (.not. mechanics) own = maxval(material%conductivity)
+               stiffness(nodes, 1) = max(stiffness(nodes, 1), section%thickness* &
+                  maxval([(material%elasticity(i, i), i=1, 4)]))
+               stiffness(nodes, 2) = max(stiffness(nodes, 2), section%thickness* &
+                  maxval(material%conductivity))
             end associate
-            stiffness(nodes) = max(stiffness(nodes), own*section%thickness)
          end associate
       end do
-      ! A rigid master has no stiffness at its reference node: its slave follows.
-      stiffer = stiffness(points%slave) > far*stiffness(points%master) .and. &
-         stiffness(points%master) > 0.0_dp
-   end function slave_is_stiffer
+   end function node_stiffness
 
    !> Reduces equilibrium to the unknowns that were numbered last, where that is not done.
    !> Errors: unconstrained bodies, a failure of the solver.

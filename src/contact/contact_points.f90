@@ -325,12 +325,16 @@ contains
          across = 0.0_dp*along
          return
       end if
-      associate (straight => self%along%values_of(k), turned => self%across%values_of(k))
-         nodes = [straight, pack(turned, [(all(straight /= turned(i)), i=1, size(turned))])]
-         along = [(sum(self%along%coefficients_of(k), mask=straight == nodes(i)), &
-            i=1, size(nodes))]
-         across = [(sum(self%across%coefficients_of(k), mask=turned == nodes(i)), &
-            i=1, size(nodes))]
+      associate (a => self%along, b => self%across)
+         associate (straight => a%value(a%start(k):a%start(k + 1) - 1), &
+            turned => b%value(b%start(k):b%start(k + 1) - 1))
+            nodes = [straight, pack(turned, [(all(straight /= turned(i)), i=1, size(turned))])]
+            allocate (along(size(nodes)), across(size(nodes)), source=0.0_dp)
+            along(:size(straight)) = a%coefficient(a%start(k):a%start(k + 1) - 1)
+            do i = 1, size(turned)
+               across(findloc(nodes, turned(i), dim=1)) = b%coefficient(b%start(k) - 1 + i)
+            end do
+         end associate
       end associate
    end subroutine means_of
 

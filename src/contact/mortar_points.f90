@@ -250,22 +250,22 @@ contains
       logical, intent(in) :: own_point(:)              ! (corners) whether it is the corner itself
       type(contact_points_type), intent(inout) :: points
       type(sum_list_type) :: on_face(2)
-      integer :: i, k, n
+      integer :: carrying(size(nodes)), i, k, n
 
       call interpolate_on_faces(side, master, point_of, own_point, on_face(1), on_face(2))
-      allocate (points%face_node(0))
       call points%at_face_nodes%reserve(size(nodes), 2*size(nodes))
       n = 0
       do i = 1, 2
          do k = 1, on_face(i)%count
             associate (terms => on_face(i)%values_of(k))
                if (size(terms) == 0) cycle
-               points%face_node = [points%face_node, nodes(n + k)]
                call points%at_face_nodes%add(terms, on_face(i)%coefficients_of(k))
+               carrying(points%at_face_nodes%count) = nodes(n + k)
             end associate
          end do
          n = n + on_face(i)%count
       end do
+      points%face_node = carrying(:points%at_face_nodes%count)
    end subroutine set_face_nodes
 
    !> Adds a multiple of a row of a matrix to a sum of nodal values.
@@ -399,7 +399,7 @@ contains
             else if (abs(ends(2)) <= 0.0_dp) then
                at = 1.0_dp
             else if (ends(1)*ends(2) < 0.0_dp) then
-               at = opposite_coordinate(side(i), x, ends)
+               at = opposite_coordinate(side(i), master%x(:, node:node), ends)
             else
                cycle
             end if

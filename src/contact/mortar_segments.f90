@@ -37,8 +37,7 @@ module mortar_segments
    use chain_geometry, only: length_between, side_positions, two_pi
    use conductance_laws, only: conductance, conductance_law_type
    use kinds, only: dp
-   use mortar_sides, only: face_line_type, hats, opposed_shapes, opposed_shapes_type, &
-      outward_normals, project, slave_side_type
+   use mortar_sides, only: face_line_type, hats, oppose, outward_normals, project, slave_side_type
    use quadrature, only: gauss_point_10, gauss_point_3, gauss_weight_10, gauss_weight_3
    use shape_functions, only: side_shape, side_slope
    use sparse_matrix, only: sparse_matrix_type, triplet_list_type
@@ -177,27 +176,31 @@ contains
       real(dp), intent(in) :: master_normal(:, :)  ! (2, nodes)
       real(dp), intent(in) :: section         ! thickness, 0 about an axis [length]
       type(segment_sums_type), intent(inout) :: sums
-      real(dp) :: area, ends(2), eta, factor(0:2), hat(2), normals(2, 2), radius, weighted(2), xi
+      real(dp) :: along(2), area, ends(2), eta, factor(0:2), hat(2), normals(2, 2), radius, &
+         weighted(2), xi
       real(dp) :: psi(size(side%nodes)), psi_master(master%side_nodes)
       real(dp) :: of_slave(2, size(psi), 0:2), of_master(2, size(psi_master), 0:2)
+      real(dp), dimension(2, size(psi_master)) :: facing_normal, x
       integer :: facing(master%side_nodes), g, i, k
 
       if (side%covered(1) > side%covered(2)) return
       ends = side%kinks(segment:segment + 1)
       facing = side_positions(max(side%opposite(segment), 1), master%side_nodes, size(master%x, 2))
+      x = master%x(:, facing)
+      facing_normal = master_normal(:, facing)
       eta = 0.0_dp
       of_slave = 0.0_dp
       of_master = 0.0_dp
       do g = 1, size(gauss_point_10)
          xi = 0.5_dp*(ends(1) + ends(2) + (ends(2) - ends(1))*gauss_point_10(g))
          psi = side_shape(size(psi), xi)
-         area = 0.5_dp*(ends(2) - ends(1))*gauss_weight_10(g)* &
-            norm2(matmul(side%x, side_slope(size(psi), xi)))
+         along = matmul(side%x, side_slope(size(psi), xi))
+         area = 0.5_dp*(ends(2) - ends(1))*gauss_weight_10(g)*norm2(along)
          radius = dot_product(psi, side%x(1, :))
          if (side%opposite(segment) > 0) then
-            call project(side, xi, master%x(:, facing), eta)
+            call project(side, xi, x, eta)
             psi_master = side_shape(size(psi_master), eta)
-            radius = 0.5_dp*(radius + dot_product(psi_master, master%x(1, facing)))
+            radius = 0.5_dp*(radius + dot_product(psi_master, x(1, :)))
          end if
          area = area*merge(section, two_pi*abs(radius), section > 0.0_dp)
          sums%whole(side%corners) = sums%whole(side%corners) + area*0.5_dp*[1.0_dp - xi, &
@@ -206,7 +209,7 @@ contains
          hat = hats(side, xi)
          sums%weight(side%corners) = sums%weight(side%corners) + area*hat
          normals(:, 1) = matmul(side%normal, psi)
-         normals(:, 2) = matmul(master_normal(:, facing), psi_master)
+         normals(:, 2) = matmul(facing_normal, psi_master)
          if (master%leads) normals(:, 1) = -normals(:, 2)
          factor = [1.0_dp, midway(normals(:, 1), normals(:, 2))]
          do k = 0, 2
@@ -224,8 +227,7 @@ contains
          call sums%slave(k)%add_block(side%corners, side%nodes, of_slave(:, :, k))
          call sums%master(k)%add_block(side%corners, facing, of_master(:, :, k))
       end do
-      call find_positions(side, segment, master%x(:, facing), master_normal(:, facing), &
-         master%leads, sums)
+      call find_positions(side, segment, x, facing_normal, master%leads, sums)
    end subroutine add_segment
 
    !> Where the hats of a side's corners are 1, and the normals there, if this segment lies nearer
@@ -394,22 +396,27 @@ contains
          type(slave_side_type), intent(in) :: side
          integer, intent(in) :: k
          type(edge_segment_type) :: segment
-         type(opposed_shapes_type) :: shapes
-         real(dp) :: width, xi
-         integer :: i
+         real(dp) :: area, of_master(master%side_nodes), of_slave(size(side%nodes)), width, xi
+         real(dp) :: x(2, size(of_master))
+         integer :: facing(size(of_master)), i
 
+         facing = side_positions(side%opposite(k), size(facing), size(master%x, 2))
+         x = master%x(:, facing)
          width = side%covered(2) - side%covered(1)
          segment%points = point_of(side%corners)
          segment%ends = (side%kinks(k:k + 1) - side%covered(1))/width
-         allocate (segment%difference(size(side%nodes) + master%side_nodes, support))
+         allocate (segment%difference(size(of_slave) + size(of_master), support))
          do i = 1, support
             xi = 0.5_dp*(side%kinks(k) + side%kinks(k + 1) + &
                (side%kinks(k + 1) - side%kinks(k))*node(i))
-            shapes = opposed_shapes(side, k, xi, master, section)
-            segment%area(i) = width*shapes%area
-            segment%difference(:, i) = segment%area(i)*[shapes%of_slave, -shapes%of_master]
+            call oppose(side, xi, x, section, of_slave, of_master, area)
+            segment%area(i) = width*area
+            segment%difference(:size(of_slave), i) = segment%area(i)*of_slave
+            segment%difference(size(of_slave) + 1:, i) = -segment%area(i)*of_master
          end do
-         segment%nodes = nodes([side%nodes, size(nodes) - size(master%x, 2) + shapes%facing])
+         allocate (segment%nodes(size(of_slave) + size(of_master)))
+         segment%nodes(:size(of_slave)) = nodes(side%nodes)
+         segment%nodes(size(of_slave) + 1:) = nodes(size(nodes) - size(master%x, 2) + facing)
       end function segment_of
    end function edge_segments_of
 
@@ -418,18 +425,22 @@ contains
       type(edge_segment_type), intent(in) :: segments(:)
       integer, intent(in) :: points           !! number of contact points
       type(hat_type), allocatable :: hats(:)  !! (points)
-      integer :: counts(points), hat, i, j, k
+      integer :: counts(points), hat, i, j, k, n
+      integer, allocatable :: known(:)
 
       allocate (hats(points))
       counts = 0
+      n = 0
       do i = 1, size(segments)
+         n = n + size(segments(i)%nodes)
          do j = 1, 2
             k = segments(i)%points(j)
             if (k > 0) counts(k) = counts(k) + 1
          end do
       end do
+      allocate (known(n))
       do k = 1, points
-         allocate (hats(k)%segment(counts(k)), hats(k)%end(counts(k)), hats(k)%nodes(0))
+         allocate (hats(k)%segment(counts(k)), hats(k)%end(counts(k)))
       end do
       counts = 0
       do i = 1, size(segments)
@@ -439,10 +450,20 @@ contains
             counts(k) = counts(k) + 1
             hats(k)%segment(counts(k)) = i
             hats(k)%end(counts(k)) = hat
-            associate (known => hats(k)%nodes, more => segments(i)%nodes)
-               hats(k)%nodes = [known, pack(more, [(all(known /= more(j)), j=1, size(more))])]
+         end do
+      end do
+      do k = 1, points
+         n = 0
+         do i = 1, counts(k)
+            associate (more => segments(hats(k)%segment(i))%nodes)
+               do j = 1, size(more)
+                  if (any(known(:n) == more(j))) cycle
+                  n = n + 1
+                  known(n) = more(j)
+               end do
             end associate
          end do
+         hats(k)%nodes = known(:n)
       end do
    end function hats_of
 

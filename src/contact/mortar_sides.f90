@@ -5,8 +5,8 @@ module mortar_sides
    use shape_functions, only: side_shape, side_slope
    implicit none
    private
-   public :: face_line_type, opposed_shapes_type, slave_side_type
-   public :: beside_line, hats, insert_kinks, no_segment, opposed_shapes, opposite_at, &
+   public :: face_line_type, slave_side_type
+   public :: beside_line, hats, insert_kinks, no_segment, oppose, opposite_at, &
       opposite_coordinate, outward_normals, project, sides_of
 
    real(dp), parameter :: no_segment = 1.0e-12_dp   !! part of a side that is rounding
@@ -34,14 +34,6 @@ module mortar_sides
       real(dp) :: covered(2) = [1.0_dp, -1.0_dp] !! its coordinates where the covered part ends
    end type slave_side_type
 
-   !> Shape functions of both faces at two points that lie opposite each other.
-   type :: opposed_shapes_type
-      integer, allocatable :: facing(:)      !! (nodes) of the master's side, along its line
-      real(dp), allocatable :: of_slave(:)   !! (nodes of the slave's side)
-      real(dp), allocatable :: of_master(:)  !! (nodes of the master's side)
-      real(dp) :: area = 0.0_dp              !! dA/dxi [length^2]
-   end type opposed_shapes_type
-
 contains
 
    !> The sides of the slave, with the normals of their nodes and their segments.
@@ -63,26 +55,26 @@ contains
       end do
    end function sides_of
 
-   !> Shape functions of both faces at a point of a segment, and the area per coordinate.
-   pure function opposed_shapes(side, segment, xi, master, section) result(shapes)
+   !> Shape functions of both faces at a point of the slave's side and the one opposite, and the
+   !> area per coordinate.
+   pure subroutine oppose(side, xi, x, section, of_slave, of_master, area)
       type(slave_side_type), intent(in) :: side
-      integer, intent(in) :: segment               !! one with a master opposite
-      real(dp), intent(in) :: xi                   !! coordinate of the side
-      type(face_line_type), intent(in) :: master
-      real(dp), intent(in) :: section              !! thickness, 0 about an axis [length]
-      type(opposed_shapes_type) :: shapes
-      real(dp) :: eta, radius
+      real(dp), intent(in) :: xi              !! coordinate of the side
+      real(dp), intent(in) :: x(:, :)         !! (2, nodes) of the master's side opposite [length]
+      real(dp), intent(in) :: section         !! thickness, 0 about an axis [length]
+      real(dp), intent(out) :: of_slave(:)    !! (nodes of the slave's side)
+      real(dp), intent(out) :: of_master(:)   !! (nodes of the master's side)
+      real(dp), intent(out) :: area           !! dA/dxi [length^2]
+      real(dp) :: along(2), eta, radius
 
-      shapes%facing = side_positions(side%opposite(segment), master%side_nodes, size(master%x, 2))
       eta = 0.0_dp
-      call project(side, xi, master%x(:, shapes%facing), eta)
-      shapes%of_slave = side_shape(size(side%nodes), xi)
-      shapes%of_master = side_shape(master%side_nodes, eta)
-      radius = 0.5_dp*(dot_product(shapes%of_slave, side%x(1, :)) + &
-         dot_product(shapes%of_master, master%x(1, shapes%facing)))
-      shapes%area = norm2(matmul(side%x, side_slope(size(side%nodes), xi)))* &
-         merge(section, two_pi*abs(radius), section > 0.0_dp)
-   end function opposed_shapes
+      call project(side, xi, x, eta)
+      of_slave = side_shape(size(of_slave), xi)
+      of_master = side_shape(size(of_master), eta)
+      radius = 0.5_dp*(dot_product(of_slave, side%x(1, :)) + dot_product(of_master, x(1, :)))
+      along = matmul(side%x, side_slope(size(of_slave), xi))
+      area = norm2(along)*merge(section, two_pi*abs(radius), section > 0.0_dp)
+   end subroutine oppose
 
    !> Hat functions of the corners of a side that the master covers at least in part; outside the
    !> covered part their values at its end.
@@ -161,7 +153,7 @@ contains
       do j = 1, size(line%x, 2), line%side_nodes - 1
          ends = at_ends(j, :)
          if (ends(1)*ends(2) >= 0.0_dp) cycle
-         xi = opposite_coordinate(side, line%x(:, j), ends)
+         xi = opposite_coordinate(side, line%x(:, j:j), ends)
          kinks = [pack(kinks, kinks <= xi), xi, pack(kinks, kinks > xi)]
       end do
    end subroutine insert_kinks
@@ -248,7 +240,7 @@ contains
    !> which an end that stays counts half as much each time.
    pure function opposite_coordinate(side, x, at_ends) result(xi)
       type(slave_side_type), intent(in) :: side
-      real(dp), intent(in) :: x(2)            !! the point [length]
+      real(dp), intent(in) :: x(2, 1)         !! the point [length]
       !> how far it lies beside the normals at the side's ends, of opposite signs
       real(dp), intent(in) :: at_ends(2)
       real(dp) :: xi
@@ -262,7 +254,7 @@ contains
          before = xi
          xi = (ends(1)*values(2) - ends(2)*values(1))/(values(2) - values(1))
          psi = side_shape(size(psi), xi)
-         value = sum(beside_normal(side, psi, reshape(x, [2, 1])))
+         value = sum(beside_normal(side, psi, x))
          if (abs(value) <= 0.0_dp .or. abs(xi - before) <= epsilon(xi)) exit
          if (value*values(2) < 0.0_dp) then
             ends(1) = ends(2)

@@ -248,8 +248,12 @@ contains
          if (first <= self%pivots .or. self%height(p) < 1) cycle
          columns = self%first_column(p + 1) - first
          associate (h => self%height(p), top => self%first_row(p))
-            at = self%offset(p)
-            reduced = [(self%value(at + (j - 1)*h + 1:at + j*h)*self%pivot(top:), j=1, columns)]
+            if (allocated(reduced)) deallocate (reduced)
+            allocate (reduced(columns*h))
+            do j = 1, columns
+               at = self%offset(p) + (j - 1)*h
+               reduced((j - 1)*h + 1:j*h) = self%value(at + 1:at + h)*self%pivot(top:)
+            end do
             do q = self%panel(self%pivots + 1), p
                low = max(top, self%first_row(q))
                if (low > self%pivots) cycle

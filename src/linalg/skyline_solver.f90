@@ -115,8 +115,10 @@ contains
       type(sparse_matrix_type), intent(in) :: lower
       integer, intent(in) :: first          ! of a panel, or none
       integer :: i, j, k, leading, row
+      integer(long) :: above(self%order)    ! entries before row 1 of each column
 
       leading = self%order - self%tail
+      above = [(self%columns%place(self%columns%panel(j), 0, j), j=1, self%order)]
       if (first <= self%order) self%columns%value(self%columns%place(self%columns%panel(first), &
          self%columns%first_row(self%columns%panel(first)), first):) = 0.0_dp
       if (.not. allocated(self%schur)) allocate (self%schur(self%tail, self%tail))
@@ -128,7 +130,7 @@ contains
             if (i > leading) then
                self%schur(i - leading, j - leading) = lower%value(k)
             else if (j >= first) then
-               self%columns%value(self%columns%place(self%columns%panel(j), i, j)) = lower%value(k)
+               self%columns%value(above(j) + i) = lower%value(k)
             end if
          end do
       end do

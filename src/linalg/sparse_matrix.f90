@@ -53,6 +53,10 @@ contains
       end if
       do i = 1, self%row_count
          total = 0.0_dp
+         if (self%row_start(i + 1) == self%row_start(i)) then
+            y(i) = total
+            cycle
+         end if
          !GCC$ unroll 4
          do k = self%row_start(i), self%row_start(i + 1) - 1
             total = total + self%value(k)*x(self%column(k))
