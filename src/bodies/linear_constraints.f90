@@ -108,9 +108,15 @@ contains
    pure function with_terms(sums) result(rows)
       type(sum_list_type), intent(in) :: sums
       integer, allocatable :: rows(:)
-      integer :: i
+      integer :: found(sums%count), i, n
 
-      rows = pack([(i, i=1, sums%count)], sums%start(2:sums%count + 1) > sums%start(:sums%count))
+      n = 0
+      do i = 1, sums%count
+         if (sums%start(i + 1) == sums%start(i)) cycle
+         n = n + 1
+         found(n) = i
+      end do
+      rows = found(:n)
    end function with_terms
 
    !> Values with those that prescribed ones are part of made anew, while the others stay. Where an
@@ -256,7 +262,7 @@ contains
       type(sparse_matrix_type) :: lower               !! (equations, equations) by rows
       real(dp), allocatable :: half(:, :), of_others(:, :), upper(:, :), written_by(:, :)
       integer, allocatable :: rows(:), unknown(:), written(:)
-      integer :: column_of(self%equations), i, k, other, place(matrix%row_count), q, row, term
+      integer :: column_of(self%equations), i, k, last, other, place(matrix%row_count), q, row, term
       logical, dimension(matrix%row_count) :: is_full, is_other
 
       rows = pack(self%with_unknowns, matrix%row_start(self%with_unknowns + 1) > &
@@ -302,12 +308,13 @@ contains
             i = rows(q)
             if (.not. is_other(i)) cycle
             do term = by%start(i), by%start(i + 1) - 1
-               associate (last => column_of(by%value(term)), factor => by%coefficient(term))
+               last = column_of(by%value(term))
+               associate (column => upper(:last, last), factor => by%coefficient(term))
                   do k = matrix%row_start(i), matrix%row_start(i + 1) - 1
                      if (.not. is_other(matrix%column(k))) cycle
                      do other = by%start(matrix%column(k)), by%start(matrix%column(k) + 1) - 1
                         row = column_of(by%value(other))
-                        if (row <= last) upper(row, last) = upper(row, last) + &
+                        if (row <= last) column(row) = column(row) + &
                            factor*matrix%value(k)*by%coefficient(other)
                      end do
                   end do

@@ -64,7 +64,6 @@ module reduced_bodies
       !> supports have changed since
       integer, allocatable, private :: references(:)
       integer, allocatable :: jump_index(:) !! (m) index of the jump on the tail, 0 where held
-      real(dp), allocatable, private :: stiffness(:, :)   !! as from node_stiffness
       logical :: is_coupled = .false.   !! whether heat depends on the mechanics of the step
       !> (2 nodes) where contact points lie on displaced faces; unallocated where none does [length]
       real(dp), allocatable :: faces_at(:)
@@ -130,7 +129,6 @@ contains
       end if
       call join_points(self%interfaces, self%ties, model, self%points)
       deallocate (self%ties)
-      self%stiffness = node_stiffness(model)
       self%laws = laws_of_step(model, self%points, 1)
       if (allocated(self%laws%wear)) allocate (self%worn(size(self%points%slave)), source=0.0_dp)
       if (has_sparse_tail(model, real(size(self%points%slave), dp)) .or. &
@@ -363,14 +361,13 @@ contains
       associate (points => self%points, used => model%mesh%node_body > 0)
          if (mechanics) then
             call constrain_displacements(used, prescribed, points, &
-               self%laws%friction%coefficient > 0.0_dp, &
-               slave_is_stiffer(self%stiffness(:, 1), points), self%mechanical%map, &
-               self%mechanical%division)
+               self%laws%friction%coefficient > 0.0_dp, slave_is_stiffer(model, points, .true.), &
+               self%mechanical%map, self%mechanical%division)
             self%mechanical%numbering = self%mechanical%numbering + 1
          end if
          if (.not. heat) return
          call constrain_temperatures(used, held_temperature, points, &
-            slave_is_stiffer(self%stiffness(:, 2), points), self%thermal%map, self%thermal%division)
+            slave_is_stiffer(model, points, .false.), self%thermal%map, self%thermal%division)
          self%thermal%numbering = self%thermal%numbering + 1
          self%jump_index = self%thermal%map%tail_index(self%thermal%map%introduced)
       end associate
@@ -402,20 +399,12 @@ contains
    !> Whether the slave's body is far stiffer, or conducts far better, than the master's. A soft
    !> body is to be written by the stiff one: the other way round its stiffness would be left over
    !> where those of the stiff one cancel, and their rounding with it.
-   pure function slave_is_stiffer(stiffness, points) result(stiffer)
-      real(dp), intent(in) :: stiffness(:)                   ! (nodes) as from node_stiffness
-      type(connections_type), intent(in) :: points
-      logical :: stiffer(size(points%slave))
-
-      ! A rigid master has no stiffness at its reference node: its slave follows.
-      stiffer = stiffness(points%slave) > far*stiffness(points%master) .and. &
-         stiffness(points%master) > 0.0_dp
-   end function slave_is_stiffer
-
-   !> The largest stiffness and conductivity of the elements that have a node, times thickness.
-   pure function node_stiffness(model) result(stiffness)
+   pure function slave_is_stiffer(model, points, mechanics) result(stiffer)
       type(model_type), intent(in) :: model
-      real(dp) :: stiffness(size(model%mesh%node_number), 2)
+      type(connections_type), intent(in) :: points
+      logical, intent(in) :: mechanics
+      logical :: stiffer(size(points%slave))
+      real(dp) :: stiffness(size(model%mesh%node_number)), own
       integer :: e, i
 
       stiffness = 0.0_dp
@@ -423,14 +412,16 @@ contains
          associate (section => model%sections(model%mesh%element_section(e)), &
             nodes => model%mesh%element_nodes(:element_node_count(model%mesh%element_kind(e)), e))
             associate (material => model%materials(section%material))
-               stiffness(nodes, 1) = max(stiffness(nodes, 1), section%thickness* &
-                  maxval([(material%elasticity(i, i), i=1, 4)]))
-               stiffness(nodes, 2) = max(stiffness(nodes, 2), section%thickness* &
-                  maxval(material%conductivity))
+               own = maxval([(material%elasticity(i, i), i=1, 4)])
+               if (.not. mechanics) own = maxval(material%conductivity)
             end associate
+            stiffness(nodes) = max(stiffness(nodes), own*section%thickness)
          end associate
       end do
-   end function node_stiffness
+      ! A rigid master has no stiffness at its reference node: its slave follows.
+      stiffer = stiffness(points%slave) > far*stiffness(points%master) .and. &
+         stiffness(points%master) > 0.0_dp
+   end function slave_is_stiffer
 
    !> Reduces equilibrium to the unknowns that were numbered last, where that is not done.
    !> Errors: unconstrained bodies, a failure of the solver.

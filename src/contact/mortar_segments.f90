@@ -242,6 +242,7 @@ contains
       integer :: c
 
       do c = 1, 2
+         if (c == 2 .and. any(side%opposite(segment + 1:) > 0)) cycle   ! these lie nearer
          xi = side%kinks(segment + c - 1)
          from = 2*c - 3.0_dp
          associate (corner => side%corners(c), psi => side_shape(size(side%nodes), xi))

@@ -67,7 +67,7 @@ contains
       class(skyline_solver_type), intent(inout) :: self
       type(sparse_matrix_type), intent(in) :: lower
       type(error_type), allocatable, intent(out) :: error
-      integer :: bad_column, first, j
+      integer :: bad_column, first, i, j
       real(dp) :: smallest
 
       call check_pattern(self, lower, error)
@@ -87,7 +87,9 @@ contains
       self%factored = lower%value
       call self%columns%form_schur(self%tail, self%schur)
       do j = 1, self%tail
-         self%schur(j, :j) = self%schur(:j, j)
+         do i = 1, j - 1
+            self%schur(j, i) = self%schur(i, j)
+         end do
       end do
    end subroutine factor
 

@@ -42,7 +42,7 @@ contains
    !> y = A x.
    pure function multiply(self, x) result(y)
       class(sparse_matrix_type), intent(in) :: self
-      real(dp), intent(in) :: x(:)                  !! (columns)
+      real(dp), contiguous, intent(in) :: x(:)      !! (columns)
       real(dp) :: y(self%row_count)                 !! (rows)
       real(dp) :: total
       integer :: i, k
