@@ -315,7 +315,7 @@ contains
                      do other = by%start(matrix%column(k)), by%start(matrix%column(k) + 1) - 1
                         row = column_of(by%value(other))
                         if (row <= last) column(row) = column(row) + &
-                           factor*matrix%value(k)*by%coefficient(other)
+                           by%coefficient(other)*matrix%value(k)*factor
                      end do
                   end do
                end associate
