@@ -265,8 +265,8 @@ contains
       integer :: column_of(self%equations), i, k, last, other, place(matrix%row_count), q, row, term
       logical, dimension(matrix%row_count) :: is_full, is_other
 
-      rows = pack(self%with_unknowns, matrix%row_start(self%with_unknowns + 1) > &
-         matrix%row_start(self%with_unknowns))
+      rows = with_terms(self%by_unknowns)
+      rows = pack(rows, matrix%row_start(rows + 1) > matrix%row_start(rows))
       call find_full(self, matrix, rows, is_full, unknown)
       column_of = 0
       column_of(unknown) = [(i, i=1, size(unknown))]
