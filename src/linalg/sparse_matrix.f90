@@ -42,28 +42,33 @@ contains
    !> y = A x.
    pure function multiply(self, x) result(y)
       class(sparse_matrix_type), intent(in) :: self
-      real(dp), contiguous, intent(in) :: x(:)      !! (columns)
+      real(dp), intent(in) :: x(:)                  !! (columns) of any stride
       real(dp) :: y(self%row_count)                 !! (rows)
-      real(dp) :: total
-      integer :: i, k
 
       if (self%in_pairs) then
          call multiply_pairs(self, x, y)
-         return
+      else
+         call multiply_rows(self, x, y)
       end if
+   end function multiply
+
+   !> y = A x, row by row.
+   pure subroutine multiply_rows(self, x, y)
+      type(sparse_matrix_type), intent(in) :: self
+      real(dp), intent(in) :: x(self%column_count)
+      real(dp), intent(out) :: y(self%row_count)
+      real(dp) :: total
+      integer :: i, k
+
       do i = 1, self%row_count
          total = 0.0_dp
-         if (self%row_start(i + 1) == self%row_start(i)) then
-            y(i) = total
-            cycle
-         end if
          !GCC$ unroll 4
          do k = self%row_start(i), self%row_start(i + 1) - 1
             total = total + self%value(k)*x(self%column(k))
          end do
          y(i) = total
       end do
-   end function multiply
+   end subroutine multiply_rows
 
    !> y = A x, two rows and two columns at a time; sums of odd and even columns stand apart, so that
    !> the compiler takes two at once.
