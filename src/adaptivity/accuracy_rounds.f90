@@ -30,7 +30,8 @@ module accuracy_rounds
 
    !> Least scale of a value: parts of the largest one so far, and of those of other interfaces.
    real(dp), parameter :: early = 0.25_dp, beside_others = 0.01_dp
-   !> Two rounds that leave more than this part of the excess are the last, from this round on.
+   !> Rounds that leave more than this part of the excess came no nearer to a target; two of them are
+   !> the last, from this round on.
    real(dp), parameter :: nearer = 0.7_dp
    integer, parameter :: least_rounds = 4
    integer, parameter, public :: most_levels = 2   !! divisions of an element in one round
@@ -95,6 +96,7 @@ module accuracy_rounds
       procedure :: is_reached
       procedure :: conclude
       procedure :: stands_still
+      procedure :: came_nearer
    end type accuracy_rounds_type
 
 contains
@@ -405,16 +407,27 @@ contains
    !> without limit.
    pure logical function stands_still(self)
       class(accuracy_rounds_type), intent(in) :: self
-      integer :: d, n
+      integer :: d
 
-      n = size(self%rounds)
-      stands_still = n >= least_rounds
+      stands_still = size(self%rounds) >= least_rounds
       if (.not. stands_still) return
-      do d = 1, size(self%rounds(n)%findings, 1)
-         associate (now => self%rounds(n)%excess(d), before => self%rounds(n - 2)%excess(d))
-            if (now > 1.0_dp .and. now <= nearer*before) stands_still = .false.
-         end associate
+      do d = 1, size(self%demands)
+         if (self%rounds(size(self%rounds))%excess(d) > 1.0_dp .and. self%came_nearer(d, 2)) &
+            stands_still = .false.
       end do
    end function stands_still
+
+   !> Whether the last rounds brought a target nearer; so does the first one.
+   pure logical function came_nearer(self, d, last)
+      class(accuracy_rounds_type), intent(in) :: self
+      integer, intent(in) :: d                    !! the demand
+      integer, intent(in) :: last                 !! number of rounds
+
+      associate (n => size(self%rounds))
+         came_nearer = n <= last
+         if (.not. came_nearer) came_nearer = self%rounds(n)%excess(d) <= nearer*self%rounds(n - &
+            last)%excess(d)
+      end associate
+   end function came_nearer
 
 end module accuracy_rounds

@@ -205,9 +205,10 @@ contains
             levels = 1
             if (uncertainty > by_division**most_levels*finding%allowed) levels = most_levels
             ! Where the last increment alone tells no error, the change by sides of half the size
-            ! does. Where sides of two lengths meet, pressures of linear elements alternate.
+            ! does; so where the recovered error does not tell where it arises. Where sides of two
+            ! lengths meet, pressures of linear elements alternate.
             if (ieee_is_nan(record%uncertainties(q, i)%total) .and. finding%at_end <= 0.0_dp &
-               .or. estimated(q)%name == 'peak_pressure' .and. &
+               .or. .not. rounds%came_nearer(d, 1) .or. estimated(q)%name == 'peak_pressure' .and. &
                any(at_faces .and. side_node_count(model%mesh%element_kind) == 2)) then
                where (at_faces) of_elements = max(of_elements, levels)
             end if
