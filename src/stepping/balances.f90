@@ -91,12 +91,12 @@ contains
             noise*bodies%thermal%largest_entry*norm2(next%temperature), tiny(1.0_dp))
          if (allocated(rates%friction_heat)) scale = max(scale, sum(abs(rates%friction_heat)))
          if (allocated(rates%stored)) scale = max(scale, maxval(abs(rates%stored)), &
-            content_noise*maxval(abs(data%equation%content_old))/data%equation%duration)
+            content_noise*norm2(data%equation%content_old)/data%equation%duration)
          if (allocated(data%equation%taken_up)) scale = max(scale, &
             maxval(abs(data%equation%taken_up))/data%equation%duration)
          if (allocated(bodies%dilatation%absolute) .and. data%equation%duration > 0.0_dp) scale = &
-            max(scale, content_noise*maxval(abs(bodies%capacity%multiply( &
-            bodies%dilatation%absolute)))/data%equation%duration)
+            max(scale, content_noise*norm2(bodies%capacity%multiply( &
+            bodies%dilatation%absolute))/data%equation%duration)
          record%fields%reaction_heat = merge(residual, 0.0_dp, prescribed)
          record%fields%external_heat = record%fields%reaction_heat + rates%entering
          rates%crossing = heat_across(bodies%points%weight, omega, next%jump)

@@ -256,3 +256,14 @@ def test_bodies_of_one_temperature_have_no_range_to_err_by(tmp_path, start):
         time = file["history/time"][()]
     assert time[0] == pytest.approx(1.0)
     assert len(time) < 12
+
+
+def test_increments_too_short_to_change_what_many_nodes_hold_balance(tmp_path):
+    """What rounding leaves of the heat of a body is that of all its nodes."""
+    grid = [i / 40 for i in range(41)]
+    deck = write(tmp_path / "short.inp", mesh("BODY", grid, grid, "DC2D4"),
+                 material("BODY", elastic=None, conductivity=1e-3, density=1.0, specific_heat=1.0),
+                 ["*INITIAL CONDITIONS, TYPE=TEMPERATURE", "BODY, 20.", "*STEP",
+                  "*HEAT TRANSFER, DIRECT", "1.E-9, 3.E-9", "*DFLUX", "BODY, BF, 1.E-6", "*END STEP"])
+    with h5py.File(solve(deck)) as file:
+        np.testing.assert_allclose(file["history/heat_in"][()], 1e-6, rtol=1e-12)
