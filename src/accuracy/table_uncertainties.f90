@@ -9,10 +9,11 @@ module table_uncertainties
    use divided_mesh, only: divided_mesh_type
    use due_output, only: table_is_due
    use element_kinds, only: element_node_count
+   use field_quantities, only: field_table
    use kinds, only: dp
    use mesh, only: mesh_type
    use model, only: model_type
-   use quantity_types, only: of_nodes, quantity_type
+   use quantity_types, only: find_quantity, of_nodes, quantity_type
    use records, only: contact_record_type, field_record_type, increment_record_type
    use simulation, only: simulation_type
    use uncertainty_rule, only: uncertainty_parts
@@ -20,7 +21,7 @@ module table_uncertainties
    private
    public :: find_table_uncertainties
 
-   !> What all numbers of tables are to the rule: neither maxima nor edges.
+   !> What all numbers of tables but displacements are to the rule: neither maxima nor edges.
    type(quantity_type), parameter :: number = quantity_type('number', of_nodes, '')
 
 contains
@@ -36,7 +37,7 @@ contains
       real(dp) :: after(3), before(3)
       integer :: i
 
-      if (allocated(record%pre_tension)) record%pre_tension_uncertainties = total( &
+      if (allocated(record%pre_tension)) record%pre_tension_uncertainties = total(number, &
          divided%record%pre_tension - record%pre_tension, record%pre_tension, iteration)
       associate (step => model%steps(record%step), mesh => model%mesh, fine => divided%model%mesh)
          if (allocated(step%node_prints)) then
@@ -47,7 +48,7 @@ contains
                   size(mesh%node_body)))
                after = sums_of(divided%record%fields, step%node_prints(i)%members( &
                   fine%node_sets, size(fine%node_body)))
-               record%total_uncertainties(:, i) = total(after - before, before, iteration)
+               record%total_uncertainties(:, i) = total(number, after - before, before, iteration)
             end do
          end if
          if (.not. table_is_due(step%contact_print_frequency, step%contact_print_points, record, &
@@ -70,13 +71,14 @@ contains
 
          allocate (record%field_uncertainties)
          associate (own => record%field_uncertainties, loads => simulation%loads)
-            if (allocated(before%temperature)) own%temperature = of_field(model%mesh, &
+            if (allocated(before%temperature)) own%temperature = of_field(number, model%mesh, &
                before%temperature, after%temperature, loads%temperature%active, iteration)
             if (.not. allocated(before%displacement)) return
             allocate (own%displacement, mold=before%displacement)
             do c = 1, 2
-               own%displacement(c, :) = of_field(model%mesh, before%displacement(c, :), &
-                  after%displacement(c, :), loads%displacement%active(c::2), iteration)
+               own%displacement(c, :) = of_field(field_table(find_quantity(field_table, 'U1')), &
+                  model%mesh, before%displacement(c, :), after%displacement(c, :), &
+                  loads%displacement%active(c::2), iteration)
             end do
          end associate
       end subroutine compare_fields
@@ -85,7 +87,8 @@ contains
 
    !> Those of a field: of the largest root mean square of its change over the nodes of an element
    !> at each node, or of the change itself there.
-   pure function of_field(mesh, before, after, is_prescribed, iteration) result(own)
+   pure function of_field(quantity, mesh, before, after, is_prescribed, iteration) result(own)
+      type(quantity_type), intent(in) :: quantity
       type(mesh_type), intent(in) :: mesh
       real(dp), intent(in) :: before(:), after(:)  ! (nodes), (nodes of the finer mesh, these first)
       logical, intent(in) :: is_prescribed(:)      ! (nodes)
@@ -100,8 +103,8 @@ contains
             largest(nodes) = max(largest(nodes), sqrt(sum(change(nodes)**2)/size(nodes)))
          end associate
       end do
-      own = merge(0.0_dp, total(largest, before, iteration), is_prescribed( &
-         :size(own)))
+      own = merge(0.0_dp, total(quantity, largest, before, iteration), &
+         is_prescribed(:size(own)))
    end function of_field
 
    !> Sums of external forces and heat over a set; NaN where the step does not have these.
@@ -151,16 +154,17 @@ contains
             last = min(size(place), k + 1)
             uncertainty(k) = sqrt(max(change(k), sum(change(first:last))/(last - first + 1)))
          end do
-         uncertainty = total(uncertainty, before, iteration)
+         uncertainty = total(number, uncertainty, before, iteration)
       end subroutine compare
 
    end function points_of
 
    !> The uncertainty of a number by the one rule.
-   elemental real(dp) function total(change, value, iteration)
+   elemental real(dp) function total(quantity, change, value, iteration)
+      type(quantity_type), intent(in) :: quantity
       real(dp), intent(in) :: change, value, iteration
 
-      total = sum(uncertainty_parts(number, change, 0.0_dp, 0.0_dp, iteration*value))
+      total = sum(uncertainty_parts(quantity, change, 0.0_dp, 0.0_dp, iteration*value))
    end function total
 
 end module table_uncertainties

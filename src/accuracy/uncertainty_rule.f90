@@ -10,6 +10,8 @@
 !> Powers (`order`) and parts of the spacing (`resolution`) are in the tables of quantities:
 !>
 !>   0.8 and 0     numbers: fields with edges have 1; F = 4 in place of 3 holds shear forces, too
+!>   0.5 and 0     displacements of nodes: where bodies yield or creep, errors by mesh and by
+!>                 increments may have opposite signs, of which halving both shows the difference
 !>   0.9 and 0     maxima of bodies, whose change is that of the field round them
 !>   1.5 and 0.08  edges of contact, whose error on half the spacing is far smaller
 !>   1.5 and 0.6   edges of stick, which are known between two nodes only

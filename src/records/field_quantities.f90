@@ -11,8 +11,8 @@ module field_quantities
    public :: field_table, maxima, point_values, von_mises
 
    type(quantity_type), parameter :: field_table(*) = [ &
-      quantity_type('U1', of_nodes, 'length', needs_mechanics), &
-      quantity_type('U2', of_nodes, 'length', needs_mechanics), &
+      quantity_type('U1', of_nodes, 'length', needs_mechanics, order=0.5_dp), &
+      quantity_type('U2', of_nodes, 'length', needs_mechanics, order=0.5_dp), &
       quantity_type('NT', of_nodes, 'temperature', needs_temperature), &
       quantity_type('SOLID', of_nodes, '-', needs_melting), &
       quantity_type('S11', of_nodes, 'stress', needs_mechanics), &
