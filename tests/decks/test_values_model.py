@@ -134,6 +134,21 @@ def test_load_axis_follows_a_prescribed_value(tmp_path, one, other):
     follows(tmp_path, make, one, other)
 
 
+@pytest.mark.parametrize(("node", "status"), [(11, 0), (77, 1)])
+def test_load_axis_follows_a_node(tmp_path, node, status):
+    deck = write(tmp_path / "deck.inp", [f"*OPTIONS, LOAD={node},1", *strip(), *material("BODY", (
+        1000.0, 0.0)), "*BOUNDARY", "1, 1, 2", "11, 2", "*STEP", "*STATIC", "0.5, 1.",
+        "*BOUNDARY", "11, 1, 1, 0.004", "*END STEP"])
+    process = run("run", "--quiet", deck, "--out", tmp_path)
+    assert process.returncode == status, process.stderr
+    if status:
+        assert "error: there is no node 77" in process.stderr
+        return
+    with h5py.File(tmp_path / "deck.vtkhdf") as file:
+        assert list(file["history/load"]) == pytest.approx([0.002, 0.004], rel=1e-12)
+        assert file["history/load"].attrs["label"] == "u_x of 11"
+
+
 # Meshes.
 
 def strip(length=2.0, kind="CPS4", more=()):

@@ -131,13 +131,13 @@ contains
       levels = 0
    end subroutine take_levels
 
-   !> Reads LOAD=nset,dof of *OPTIONS: the prescribed value that the load axis follows.
+   !> Reads LOAD=nset,dof or node,dof of *OPTIONS: the prescribed value that the load axis follows.
    subroutine build_load_axis(deck)
       type(deck_type), intent(inout) :: deck
       character(:), allocatable :: name
       integer, allocatable :: members(:)
-      integer :: comma, set, dof, i
-      logical :: valid
+      integer :: comma, set, dof, i, number
+      logical :: is_node, valid
 
       deck%model%load_label = 'time'
       if (.not. allocated(deck%load_set)) then
@@ -148,16 +148,24 @@ contains
       if (comma == 0) comma = len(deck%load_set) + 1
       name = deck%load_set(:comma - 1)
       call read_integer(deck%load_set(min(comma + 1, len(deck%load_set) + 1):), dof, valid)
+      call read_integer(name, number, is_node)
       set = deck%index_of('node set', name)
-      if (valid .and. set > 0) dof = axis_in_plane(deck%model%transforms, deck%mesh%node_sets, &
-         deck%mesh%node_sets(set)%members, dof)
+      is_node = is_node .and. set == 0
+      members = [integer ::]
+      if (set > 0) members = deck%mesh%node_sets(set)%members
+      if (is_node) members = pack([deck%node_index%find(number)], deck%node_index%find(number) > 0)
+      if (valid .and. size(members) > 0) dof = axis_in_plane(deck%model%transforms, &
+         deck%mesh%node_sets, members, dof)
       if (.not. valid .or. .not. any(dof == [1, 2, dof_temperature])) then
-         call deck%error(deck%load_place, 'LOAD= has a node set and a degree of freedom 1, 2 or 11')
+         call deck%error(deck%load_place, 'LOAD= has a node or node set and a degree of '// &
+            'freedom 1, 2 or 11')
          return
       end if
-      call deck%look_up('node set', name, deck%load_place, set)
-      if (set == 0) return
-      members = deck%mesh%node_sets(set)%members
+      if (.not. is_node) then
+         call deck%look_up('node set', name, deck%load_place, set)
+      else if (size(members) == 0) then
+         call deck%missing(deck%load_place, 'there is no node '//name, 'node', name)
+      end if
       if (size(members) == 0) return
       members = pack(members, .not. deck%dropped(members))
       if (size(members) == 0) then
