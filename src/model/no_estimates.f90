@@ -6,7 +6,8 @@ module no_estimates
       uncertainty_no
    implicit none
    private
-   public :: first_reason, mark_of, reason_inside_step, reason_of_run, remains, words_of_reason
+   public :: first_reason, mark_of, reason_inside_step, reason_of_run, reason_without_check, &
+      remains, words_of_reason
 
    integer, parameter, public :: no_reason = 0            !! there is one, or no value
    ! Of the whole run.
@@ -23,13 +24,14 @@ module no_estimates
    integer, parameter, public :: of_points = 12    !! single nodes or points, not on both meshes
    integer, parameter, public :: of_axis = 13      !! of a peak pressure there on linear elements
    integer, parameter, public :: reason_count = 13
-   integer, parameter, public :: of_checks = 14    !! of what checks alone compare; in no file
+   ! Of what checks alone compare, and only with ERRORS=FULL; in no file.
+   integer, parameter :: of_full_checks = 14, of_checks = 15
 
    character(*), parameter :: words(of_checks) = [character(32) :: 'branches', 'ERRORS=NO', &
       'slides beyond its contact points', 'not unique', 'at a corner', &
       'peak grows with the mesh', 'path; ERRORS=FULL', 'needs ERRORS=FULL', &
       'no solution on a finer mesh', 'not there on a finer mesh', 'SLIDING=FINITE; ERRORS=FULL', &
-      'single points', 'axis', '*VERIFY; ERRORS=FULL']
+      'single points', 'axis', '*VERIFY; ERRORS=FULL', 'only for *VERIFY']
 
 contains
 
@@ -67,6 +69,13 @@ contains
       reason = reason_of_run(model)
       if (reason == no_reason .and. model%uncertainty /= uncertainty_full) reason = of_step
    end function reason_inside_step
+
+   !> Why what checks alone compare has no uncertainty outside of them.
+   pure integer function reason_without_check(model) result(reason)
+      type(model_type), intent(in) :: model
+
+      reason = merge(of_checks, of_full_checks, model%uncertainty == uncertainty_full)
+   end function reason_without_check
 
    !> Whether finer meshes and shorter increments leave a reason as it is.
    elemental logical function remains(reason)

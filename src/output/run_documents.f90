@@ -11,7 +11,8 @@ module run_documents
    use json, only: json_type
    use kinds, only: dp
    use model, only: model_type
-   use no_estimates, only: no_finer_value, no_reason, of_checks, reason_inside_step, words_of_reason
+   use no_estimates, only: no_finer_value, no_reason, reason_inside_step, reason_without_check, &
+      words_of_reason
    use quantity_types, only: find_quantity, of_interface, quantity_type
    use records, only: uncertainty_type
    use result_rows, only: result_row_type
@@ -106,7 +107,7 @@ contains
             else if (q > 0) then
                call document%put(words_of_reason(reason_inside_step(model)), 'no_estimate')
             else
-               call document%put(words_of_reason(of_checks), 'no_estimate')
+               call document%put(words_of_reason(reason_without_check(model)), 'no_estimate')
             end if
             call document%close('}')
          end do

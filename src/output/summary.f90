@@ -17,8 +17,8 @@ module summary
    use mesh_bodies, only: body_name
    use model, only: model_type
    use model_words, only: has_many
-   use no_estimates, only: at_corner, mark_of, no_finer_value, no_reason, of_checks, &
-      reason_inside_step, reason_of_run
+   use no_estimates, only: at_corner, mark_of, no_finer_value, no_reason, &
+      reason_inside_step, reason_of_run, reason_without_check
    use quantity_types, only: find_quantity, needs_wear, of_interface, quantity_type
    use records, only: body_uncertainty_type, contact_record_type, increment_outcome_type, &
       increment_record_type, uncertainty_type
@@ -490,7 +490,8 @@ contains
       if (.not. has_quantity(contact, needs_wear)) return
       volume = contact_values(worn(q)%name, contact)
       if (volume(1) > 0.0_dp) call append(lines, summary_line('worn volume', volume(1), &
-         mark_of(of_checks), unit_label(worn(q)%unit, model%units), trim(worn_faces(q))//of))
+         mark_of(reason_without_check(model)), unit_label(worn(q)%unit, model%units), &
+         trim(worn_faces(q))//of))
    end subroutine add_worn
 
    subroutine add_quantities(self, model, points, i, lines)

@@ -197,15 +197,18 @@ def test_its_uncertainty_holds_the_exact_volume(tmp_path):
     assert abs(value - exact) < half < 5 * abs(value - exact)
 
 
-def test_without_a_check_it_says_what_estimates_it(tmp_path):
+@pytest.mark.parametrize(("errors", "reason"), [("LAST", "*VERIFY; ERRORS=FULL"),
+                                                ("FULL", "only for *VERIFY")])
+def test_without_a_check_it_says_what_estimates_it(tmp_path, errors, reason):
     """The master does not wear."""
-    deck = write(tmp_path / "deck.inp", ['*OPTIONS, ERRORS=FULL, UNITS="mm MPa W C"', *bar(0.25)])
+    deck = write(tmp_path / "deck.inp", [f'*OPTIONS, ERRORS={errors}, UNITS="mm MPa W C"',
+                                         *bar(0.25)])
     found = json.loads(run("run", "--json", deck, "--out", tmp_path).stdout)
     for side in ("slave", "master"):
         told = found["summary"]["interfaces"]["C"][f"worn_volume_{side}"]
-        assert told["no_estimate"] == "*VERIFY; ERRORS=FULL" and "uncertainty" not in told
+        assert told["no_estimate"] == reason and "uncertainty" not in told
     value = found["summary"]["interfaces"]["C"]["worn_volume_slave"]["value"]
     (line,) = re.findall("^ +worn volume .*", (tmp_path / "deck.lst").read_text(), re.M)
     told, rest = re.fullmatch(r" +worn volume +(\S+) (.*)", line).groups()
     assert float(told) == pytest.approx(value, rel=1e-5)
-    assert rest.rstrip() == "(no estimate: *VERIFY; ERRORS=FULL) mm^3, slave"
+    assert rest.rstrip() == f"(no estimate: {reason}) mm^3, slave"

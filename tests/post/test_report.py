@@ -679,12 +679,17 @@ def page_of_example(folder, name, *options, status=0):
     return (folder / f"{name}.html").read_text()
 
 
-def test_a_worn_volume_says_what_estimates_it(synthetic):
+@pytest.mark.parametrize(("full", "reason"), [(False, "*VERIFY; ERRORS=FULL"),
+                                              (True, "only for *VERIFY")])
+def test_a_worn_volume_says_what_estimates_it(synthetic, full, reason):
     def wear(file):
         file["contact/CYLINDER/worn_volume_slave"] = 1e-3 * file["history/load"][()]
+        if full:
+            file.require_group("uncertainty/increment")
+            file["uncertainty/time"] = file["history/time"][()]
 
     row = re.search(r'<th scope="row"[^>]*>worn volume slave</th>(.*?)</tr>', synthetic(wear).read_text())[1]
-    assert re.findall(r"<td[^>]*>(.*?)</td>", row)[1] == "no estimate: *VERIFY; ERRORS=FULL"
+    assert re.findall(r"<td[^>]*>(.*?)</td>", row)[1] == f"no estimate: {reason}"
 
 
 def test_an_edge_at_the_end_of_the_face_has_no_uncertainty(tmp_path):

@@ -421,10 +421,13 @@ class Result:
                           values[rows], why.get(key, inside))
         return known
 
-    @staticmethod
-    def reason_of(name):
+    def reason_of(self, name):
         """Return why a quantity that `uncertainties` does not have has none, if there is a reason."""
-        return "*VERIFY; ERRORS=FULL" if name.startswith("worn_volume") else ""
+        if not name.startswith("worn_volume"):
+            return ""
+        # The group `increment` is there with ERRORS=FULL only.
+        full = "increment" in (uncertainty_of(self.file) or {})
+        return "only for *VERIFY" if full else "*VERIFY; ERRORS=FULL"
 
     @property
     def maxima(self):
