@@ -13,7 +13,7 @@ module increments
    use records, only: add_attempts, increment_record_type, note_failure
    use simulation, only: simulation_type
    use solution_state, only: solution_state_type
-   use steps, only: adapts_increments, solves_heat, solves_mechanics
+   use steps, only: adapts_increments, boundary_type, dof_temperature, solves_heat, solves_mechanics
    use text, only: append, counted, percent, to_text
    use touch_instants, only: touch_search_type
    implicit none
@@ -131,31 +131,41 @@ contains
          to_text(record%time)//'): '//error%message
    end subroutine try_again
 
-   !> What a run was carrying last before bodies that yield found no equilibrium under forces that
-   !> grow, or how the forces would grow where they act at once; nothing for others.
+   !> How forces on bodies that yield, or displacements, would grow where they act at once; what a
+   !> run was carrying last before such bodies found no equilibrium under forces that grow; nothing
+   !> for others.
    function words_of_collapse(run, model) result(words)
       type(simulation_type), intent(in) :: run
       type(model_type), intent(in) :: model
       character(:), allocatable :: words
-      logical :: grows
+      logical :: acts_at_once, grows
 
       words = ''
-      if (.not. run%corrections%yields(model)) return
       grows = any(abs(run%loads%nodal_forces()) > 0.0_dp)
       if (allocated(run%state%force_load)) grows = any(abs(run%loads%nodal_forces()) > &
          abs(run%state%force_load))
-      if (.not. grows) return
-      associate (control => run%control)
-         if (control%step_time <= 0.0_dp .and. .not. model%steps(control%step)%ramped) then
-            words = '; loads without an amplitude act at once, in the shortest increment, too: '// &
-               '*STEP, AMPLITUDE=RAMP ramps them'
+      grows = grows .and. run%corrections%yields(model)
+      associate (control => run%control, step => model%steps(run%control%step))
+         acts_at_once = control%step_time <= 0.0_dp .and. .not. step%ramped
+         if (acts_at_once .and. (grows .or. any(moves(step%boundaries)))) then
+            words = '; loads and displacements without an amplitude act at once, in the '// &
+               'shortest increment, too: *STEP, AMPLITUDE=RAMP ramps them'
             return
          end if
+         if (.not. grows) return
          words = '; collapse: the last load that was carried is that of time '// &
             to_text(control%step_start + control%step_time)//', '//percent(control%step_time/ &
             model%steps(control%step)%period, 4)//' of step '//to_text(control%step)
       end associate
    end function words_of_collapse
+
+   !> Whether it prescribes a displacement, without an amplitude, that is not zero.
+   elemental logical function moves(boundary)
+      type(boundary_type), intent(in) :: boundary
+
+      moves = boundary%dof /= dof_temperature .and. boundary%amplitude == 0 .and. &
+         abs(boundary%value) > 0.0_dp .and. .not. boundary%keeps
+   end function moves
 
    !> Whether an attempt that was solved is the increment: in a transient whose increments are free
    !> it is not where it errs too much, or an interface first touches or parts within it; the next

@@ -95,6 +95,17 @@ def test_a_pad_of_a_pattern_slides_along_all_of_the_rail(tmp_path):
                        final(tmp_path, "names", cards), 1e-12)
 
 
+@pytest.mark.parametrize("amplitude", ["STEP", "RAMP"])
+def test_a_slide_that_acts_at_once_names_the_ramp(tmp_path, amplitude):
+    """A twentieth of a second is too long for a ramp of 3 within one."""
+    cards = sliding(3.0, heat=False)
+    at = len(cards) - cards[::-1].index("*STEP, INC=1000") - 1
+    cards[at:at + 3] = [f"*STEP, INC=1000, AMPLITUDE={amplitude}", "*STATIC", "0.2, 1., 0.1"]
+    process = run("run", "--quiet", write(tmp_path / "deck.inp", cards), "--out", tmp_path)
+    assert process.returncode == 2 and "contact pair FACE slips by" in process.stderr
+    assert ("*STEP, AMPLITUDE=RAMP ramps them" in process.stderr) == (amplitude == "STEP")
+
+
 def flush(pair, kind, ends, short=0.0, rigid=False):
     """Return a hot body across a gap of gas from a cold one that ends with it, but for `short`."""
     own = {"expansion": 1e-5, "conductivity": 0.003, "density": 1e-5, "specific_heat": 300.0}
