@@ -9,7 +9,7 @@ module equations
    implicit none
    private
    public :: equation_type, equation_nodes, coupling_type, coupling_equations, constrained_nodes, &
-      fill_equation, surface_nodes, facing_nodes, section_nodes, coupled_nodes
+      fill_equation, surface_nodes, facing_nodes, section_nodes, coupled_nodes, tabled_nodes
 
    !> A sum of coefficient*degree of freedom that is zero, of displacements or of temperatures.
    type :: equation_type
@@ -260,6 +260,20 @@ contains
             + (mesh%coordinates(2, other) - mesh%coordinates(2, one(k)))**2, dim=1))
       end do
    end function facing_nodes
+
+   !> Nodes that tables of nodes have rows for: those of elements, springs and trusses, and
+   !> reference nodes of couplings, rigid bodies and sections.
+   pure function tabled_nodes(mesh, elongations, couplings) result(tabled)
+      type(mesh_type), intent(in) :: mesh
+      type(equation_type), intent(in) :: elongations(:)   !! of springs and trusses
+      type(coupling_type), intent(in) :: couplings(:)
+      logical :: tabled(size(mesh%node_number)), is_used(0:size(mesh%node_number))
+
+      is_used = .false.
+      is_used([mesh%element_nodes]) = .true.
+      tabled = is_used(1:) .or. equation_nodes(elongations, size(tabled))
+      tabled(couplings%reference) = .true.
+   end function tabled_nodes
 
    !> Nodes that equations relate, and those that couplings bring.
    pure function constrained_nodes(equations, couplings, nodes) result(related)

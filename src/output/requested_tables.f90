@@ -3,7 +3,7 @@
 module requested_tables
    use, intrinsic :: ieee_arithmetic, only: ieee_is_nan
    use due_output, only: table_is_due
-   use equations, only: equation_nodes, section_nodes
+   use equations, only: tabled_nodes
    use kinds, only: dp
    use model, only: model_type
    use print_requests, only: print_ceeq, print_creep, print_displacement, print_force, &
@@ -153,16 +153,15 @@ contains
       end do
    end subroutine tables_of_step
 
-   !> The table of the nodes of a set that elements, springs or trusses have, and of sums over them.
+   !> The table of the nodes of a set that tables have rows for, and of sums over them.
    function table_of_nodes(request, model) result(table)
       type(print_request_type), intent(in) :: request
       type(model_type), intent(in) :: model
       type(requested_table_type) :: table
-      logical :: is_held(size(model%mesh%node_body)), is_turned
+      logical :: is_held(size(model%mesh%node_number)), is_turned
       integer :: i
 
-      is_held = model%mesh%node_body > 0 .or. equation_nodes(model%bars%elongation, size(is_held))
-      is_held(section_nodes(model%couplings)) = .true.
+      is_held = tabled_nodes(model%mesh, model%bars%elongation, model%couplings)
       table%set = request%name_of_set(model%mesh%node_sets)
       table%member = request%members(model%mesh%node_sets, size(is_held))
       table%member = pack(table%member, is_held(table%member))

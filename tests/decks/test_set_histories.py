@@ -7,7 +7,7 @@ import pytest
 from blocks import write
 from deck_runs import run
 from physics import nodes_of
-from test_prints import BLOCK, BODY, CONDUCTIVITY, HELD, POISSON, YOUNG, heated, static, turned
+from test_prints import BLOCK, BODY, CONDUCTIVITY, HELD, POISSON, YOUNG, heated, static, tables, turned
 from test_restart import assert_same, go_on
 
 DOWN = -(1 - POISSON**2) / YOUNG   # of a pressed block in plane strain, by pressure and height
@@ -155,3 +155,40 @@ def test_a_run_that_goes_on_keeps_its_histories(tmp_path):
     with h5py.File(added) as file:
         assert set(file["history/nodes"]) == {"BLOCK.TOP", "BLOCK.RIGHT"}
         assert "external_force_x" not in file["history/nodes/BLOCK.TOP"]
+
+
+PLATE = ["*NODE", "9001, 0.5, 3.", "*NSET, NSET=PLATE", "9001"]
+GRIPS = {   # what has a reference node -> cards
+    "a rigid body": ["*SURFACE, NAME=PLATE, TYPE=SEGMENTS", "START, 3., 1.", "LINE, -1., 1.",
+                     "*RIGID BODY, REF NODE=9001, ANALYTICAL SURFACE=PLATE",
+                     "*SURFACE INTERACTION, NAME=SMOOTH", "*CONTACT PAIR, INTERACTION=SMOOTH, NAME=SEAT",
+                     "BLOCK.TOP, PLATE"],
+    "a coupling": ["*COUPLING, REF NODE=9001, SURFACE=BLOCK.TOP, CONSTRAINT NAME=GRIP", "*KINEMATIC",
+                   "2, 2"]}
+
+
+@pytest.mark.parametrize("grip", GRIPS.values(), ids=GRIPS)
+def test_a_reference_node_has_its_way_and_force(tmp_path, grip):
+    """It presses the block evenly: 1.25 wide and 1 high, so the force is -1.25 u/DOWN."""
+    cards = [BODY, PLATE, grip, static(*HELD, "9001, 1", "9001, 6", "9001, 2, 2, -0.004",
+                                       "*NODE PRINT, NSET=PLATE, TOTALS=YES", "U, RF",
+                                       times="0.5, 1.")]
+    result = solve(tmp_path, *cards)
+    values, _, _ = history(result, "nodes/PLATE")
+    np.testing.assert_array_equal(values["node"], [9001])
+    np.testing.assert_allclose(values["displacement_y"], [[-0.002], [-0.004]], rtol=1e-12)
+    force = 1.25 / DOWN * np.array([0.002, 0.004])
+    np.testing.assert_allclose(values["external_force_y"][:, 0], force, rtol=1e-8)
+    np.testing.assert_allclose(values["total_external_force_y"], force, rtol=1e-8)
+    (table,) = [t for t in tables(tmp_path, *cards) if t[:3] == (2, "NODES", "PLATE")]
+    assert [float(word) for word in table[4][0]] == pytest.approx(
+        [9001, 0.5, 3.0, 0.0, -0.004, 0.0, force[1]], rel=1e-6, abs=1e-9)
+
+
+def test_a_set_of_nodes_without_rows_is_told(tmp_path):
+    deck = write(tmp_path / "deck.inp", BODY, ["*NODE", "9001, 0.5, 3.", "*NSET, NSET=STRAY", "9001"],
+                 pressed("*NODE PRINT, NSET=STRAY", "U", "*NODE PRINT, NSET=BLOCK.TOP", "U"))
+    process = run("check", deck)
+    assert process.returncode == 0
+    (line,) = [line for line in process.stderr.splitlines() if "nothing is printed" in line]
+    assert "STRAY" in line and "*VERIFY" in line

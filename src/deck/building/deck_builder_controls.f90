@@ -8,6 +8,7 @@ module deck_builder_controls
       start_both, start_closed, start_given, start_open, start_previous, start_type, &
       thermal_scheme_type
    use deck_context, only: deck_type
+   use equations, only: tabled_nodes
    use kinds, only: dp
    use materials, only: melts
    use steps, only: step_controls_type
@@ -199,6 +200,12 @@ contains
                   call deck%warning(deck%card%place_of('NSET'), 'ORDER=1 leaves no node of '// &
                      set%name//', because none is a corner: nothing is printed')
                   is_known = .false.
+               else if (lacks_rows(deck, set%members)) then
+                  call deck%warning(deck%card%place_of('NSET'), 'nothing is printed for '// &
+                     set%name//': its nodes have no element and are no reference nodes of '// &
+                     'rigid bodies, couplings or pre-tension sections; *VERIFY tells values '// &
+                     'of other nodes of equations and of generalized plane strain')
+                  is_known = .false.
                end if
             end associate
          end if
@@ -231,6 +238,19 @@ contains
       if (.not. allocated(requests)) allocate (requests(0))
       requests = [requests, request]
    end subroutine build_print
+
+   !> Whether there are nodes, and none that a table has a row for.
+   pure logical function lacks_rows(deck, nodes)
+      type(deck_type), intent(in) :: deck
+      integer, intent(in) :: nodes(:)
+      logical :: tabled(size(deck%mesh%node_number))
+
+      lacks_rows = .false.
+      ! Where a card is wrong, no node is known to be without an element or a coupling.
+      if (size(nodes) == 0 .or. deck%has_errors()) return
+      tabled = tabled_nodes(deck%mesh, deck%model%bars%elongation, deck%model%couplings)
+      lacks_rows = .not. any(tabled(nodes))
+   end function lacks_rows
 
    !> Takes the set of a table. One that is not known is no error where the cards of sets have some.
    subroutine take_set(parameter, noun, deck, set, is_known)
