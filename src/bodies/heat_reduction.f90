@@ -11,7 +11,7 @@ module heat_reduction
    use kinds, only: dp
    use model, only: model_type
    use reduced_bodies, only: reduced_bodies_type
-   use sparse_matrix, only: sparse_matrix_type, triplet_list_type
+   use sparse_matrix, only: sparse_matrix_type
    use unconstrained_bodies, only: undetermined_beside
    implicit none
    private
@@ -38,9 +38,10 @@ module heat_reduction
       !> Whether loads of jumps are formed as they are asked for, instead of jump_load for all of
       !> them: less work for a single increment.
       logical :: forms_on_demand = .false.
-      !> (2 nodes, nodes) forces on what pieces keep per temperature of what they keep, where these
-      !> go to solvers, and which of both fields it was made of
-      type(sparse_matrix_type), private :: kept_load
+      !> Forces on what pieces keep per temperature of what they keep, where these go to solvers,
+      !> these degrees of freedom and nodes, and which of both fields it was made of
+      real(dp), allocatable, private :: kept_load(:, :)
+      integer, allocatable, private :: kept_dofs(:), kept_nodes(:)
       integer, private :: kept_load_of(2) = 0
       integer, private :: ranked_displacements = 0   !! numbering of those in node_rank
       !> numbering and values of equilibrium in jump_load, 0 without it
@@ -58,7 +59,7 @@ module heat_reduction
       procedure :: is_divided
       procedure :: loads_of_tail
       procedure :: has_tail_forces
-      procedure :: kept_forces
+      procedure :: add_kept_forces
       procedure :: means_of_tail
       procedure :: friction_on_tail
       procedure :: conductors
@@ -162,9 +163,8 @@ contains
       if (self%is_on_demand(bodies)) return
       if (.not. has_friction_loads(self, bodies)) call form_friction(self, bodies)
       if (.not. has_loads(self, bodies)) then
-         if (allocated(self%kept_load%value)) then
-            call loads_by_solves(bodies%thermal, self, bodies%mechanical, bodies%equilibrium, &
-               self%kept_load, self%jump_load)
+         if (allocated(self%kept_load)) then
+            call form_jump_load(self, bodies)
          else
             call loads_by_solves(bodies%thermal, self, bodies%mechanical, bodies%equilibrium, &
                bodies%thermal_load, self%jump_load)
@@ -253,7 +253,7 @@ contains
       real(dp) :: load(bodies%mechanical%map%tail, size(on_tail, 2))   !! (mechanical tail, n)
 
       if (self%has_tail_forces(bodies)) then
-         load = loads_by(self%kept_load, bodies, self%extended_to_kept(bodies%thermal, on_tail))
+         load = loads_by(self, bodies, self%extended_to_kept(bodies%thermal, on_tail))
       else if (self%is_on_demand(bodies)) then
          load = loads_of_temperatures(bodies, self%extended(bodies%thermal, on_tail))
       else
@@ -267,17 +267,20 @@ contains
       class(heat_reduction_type), intent(in) :: self
       type(reduced_bodies_type), intent(in) :: bodies
 
-      has_tail_forces = self%is_on_demand(bodies) .and. allocated(self%kept_load%value)
+      has_tail_forces = self%is_on_demand(bodies) .and. allocated(self%kept_load)
    end function has_tail_forces
 
-   !> These forces.
-   pure function kept_forces(self, temperature) result(forces)
+   !> Adds these forces.
+   pure subroutine add_kept_forces(self, temperature, forces)
       class(heat_reduction_type), intent(in) :: self
       real(dp), intent(in) :: temperature(:)   !! (nodes) those that pieces keep, others not used
-      real(dp) :: forces(2*size(temperature))  !! (2 nodes) [force]
+      real(dp), intent(inout) :: forces(:)     !! (2 nodes) [force]
 
-      forces = self%kept_load%multiply(temperature)
-   end function kept_forces
+      associate (made => product_of(self%kept_load, reshape(temperature(self%kept_nodes), &
+         [size(self%kept_nodes), 1])))
+         forces(self%kept_dofs) = forces(self%kept_dofs) + made(:, 1)
+      end associate
+   end subroutine add_kept_forces
 
    !> Mean temperatures of the faces that the thermal tail makes.
    function means_of_tail(self, bodies, on_tail) result(mean)
@@ -320,42 +323,61 @@ contains
    subroutine form_kept_load(self, bodies)
       class(heat_reduction_type), intent(inout) :: self
       type(reduced_bodies_type), intent(in) :: bodies
-      type(triplet_list_type) :: list
       real(dp) :: forces(bodies%thermal_load%row_count), unit(bodies%thermal_load%column_count)
-      integer :: i, k
+      integer :: k
 
       associate (heat => bodies%thermal, piece => bodies%mechanical%division%piece)
-         call list%reserve(count(piece == 0)*count(heat%division%piece == 0))
-         do k = 1, size(unit)
-            if (heat%division%piece(k) /= 0) cycle
-            if (.not. (heat%map%moves(k) .or. heat%map%is_given(k))) cycle
+         self%kept_dofs = pack([(k, k=1, size(forces))], piece == 0)
+         self%kept_nodes = pack([(k, k=1, size(unit))], heat%division%piece == 0 .and. &
+            (heat%map%moves([(k, k=1, size(unit))]) .or. &
+            heat%map%is_given([(k, k=1, size(unit))])))
+         if (allocated(self%kept_load)) deallocate (self%kept_load)
+         allocate (self%kept_load(size(self%kept_dofs), size(self%kept_nodes)))
+         do k = 1, size(self%kept_nodes)
             unit = 0.0_dp
-            unit(k) = 1.0_dp
+            unit(self%kept_nodes(k)) = 1.0_dp
             call self%pieces%fill(unit)
             forces = bodies%thermal_load%multiply(unit)
             call bodies%equilibrium%pieces%condense(forces)
-            do i = 1, size(forces)
-               if (piece(i) == 0 .and. abs(forces(i)) > 0.0_dp) call list%add(i, k, forces(i))
-            end do
+            self%kept_load(:, k) = forces(self%kept_dofs)
          end do
-         self%kept_load = list%compress(size(forces), size(unit))
          self%kept_load_of = [self%kept_made, bodies%equilibrium%kept_made]
       end associate
    end subroutine form_kept_load
 
+   !> The loads of the jumps where pieces keep what they depend on.
+   subroutine form_jump_load(self, bodies)
+      class(heat_reduction_type), intent(inout) :: self
+      type(reduced_bodies_type), intent(in) :: bodies
+      integer :: first, last
+
+      associate (tail => bodies%thermal%map%tail)
+         allocate (self%jump_load(bodies%mechanical%map%tail, tail))
+         do first = 1, tail, columns_at_once
+            last = min(first + columns_at_once - 1, tail)
+            self%jump_load(:, first:last) = loads_by(self, bodies, &
+               self%unit_responses(bodies%thermal, first, last))
+         end do
+      end associate
+   end subroutine form_jump_load
+
    !> Condensed mechanical loads, balanced, of temperatures of the nodes that pieces keep, or of all
    !> where there are none.
-   function loads_by(thermal_load, bodies, temperature) result(load)
-      type(sparse_matrix_type), intent(in) :: thermal_load   ! of these nodes
+   function loads_by(self, bodies, temperature) result(load)
+      class(heat_reduction_type), intent(in) :: self
       type(reduced_bodies_type), intent(in) :: bodies
       real(dp), intent(in) :: temperature(:, :)
       real(dp) :: load(bodies%mechanical%map%tail, size(temperature, 2))
       real(dp), allocatable :: forces(:, :)
       integer :: k
 
-      allocate (forces(thermal_load%row_count, size(load, 2)))
+      allocate (forces(bodies%thermal_load%row_count, size(load, 2)), source=0.0_dp)
       do k = 1, size(load, 2)
-         forces(:, k) = thermal_load%multiply(temperature(:, k))
+         if (allocated(self%kept_load)) then
+            call self%add_kept_forces(temperature(:, k), forces(:, k))
+         else
+            forces(:, k) = bodies%thermal_load%multiply(temperature(:, k))
+         end if
       end do
       call bodies%equilibrium%condense_kept(bodies%mechanical, forces, load)
       do k = 1, size(load, 2)
@@ -444,11 +466,7 @@ contains
          end do
          call self%condense_kept(bodies%thermal, heat, self%friction_heat(:, first:last), &
             temperature)
-         if (allocated(self%kept_load%value)) then
-            self%friction_load(:, first:last) = loads_by(self%kept_load, bodies, temperature)
-         else
-            self%friction_load(:, first:last) = loads_by(bodies%thermal_load, bodies, temperature)
-         end if
+         self%friction_load(:, first:last) = loads_by(self, bodies, temperature)
          do k = first, last
             self%friction_mean(:, k) = bodies%points%means(temperature(:, k - first + 1))
          end do

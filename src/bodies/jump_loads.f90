@@ -34,8 +34,7 @@ contains
       class(field_reduction_type), intent(in) :: heat            !! and reduced
       type(field_problem_type), intent(in) :: mechanical         !! numbered
       class(field_reduction_type), intent(in) :: equilibrium     !! and reduced
-      !> B, forces per nodal temperature: of the nodes that pieces of the bodies keep
-      type(sparse_matrix_type), intent(in) :: thermal_load
+      type(sparse_matrix_type), intent(in) :: thermal_load       !! B, forces per nodal temperature
       real(dp), allocatable, intent(out) :: loads(:, :)    !! (mechanical tail, thermal tail)
       real(dp), allocatable :: forces(:, :)
       integer :: first, last, tail

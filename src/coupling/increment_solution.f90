@@ -401,7 +401,7 @@ contains
                trial%next%forces_beyond)
             call bodies%equilibrium%condense_inside(bodies%mechanical, applied + thermal, given, &
                trial%known(inside_mechanics), left)
-            kept = heat%kept_forces(temperature)
+            call heat%add_kept_forces(temperature, kept)
             left = left + kept
          else
             thermal = unstrained_forces(bodies, temperature - loads%temperature%rest, &
@@ -444,6 +444,7 @@ contains
       type(solution_state_type), intent(in) :: before  !! state at the start
       type(trial_type), intent(inout) :: trial         !! as solve_points left it
       real(dp), allocatable :: on_tail(:)
+      real(dp) :: kept(2*size(trial%next%temperature))
       integer :: k
 
       associate (data => trial%data, workspace => trial%workspace, next => trial%next, &
@@ -451,8 +452,9 @@ contains
          next%smallest_gap = min(before%smallest_gap, next%contact%gap)
          if (.not. solves_mechanics(data%analysis)) return
          if (only_places(bodies, heat, trial)) then
-            data%force%rhs(:, 1) = data%force%rhs(:, 1) + bodies%mechanical%map%restrict( &
-               heat%kept_forces(kept_jumps(bodies, heat, workspace%on_tail)))
+            kept = 0.0_dp
+            call heat%add_kept_forces(kept_jumps(bodies, heat, workspace%on_tail), kept)
+            data%force%rhs(:, 1) = data%force%rhs(:, 1) + bodies%mechanical%map%restrict(kept)
          else if (bodies%is_coupled) then
             call complete_temperatures(bodies, heat, loads, trial)
          end if
