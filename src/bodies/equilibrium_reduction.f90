@@ -49,7 +49,7 @@ contains
       type(contact_system_type) :: former, fresh
       character(:), allocatable :: words
 
-      call self%release_tail()
+      if (mechanical%division%cuts_bodies()) call self%release_tail()
       call self%factor(mechanical, sparse_matrix_type(), model%solver, node_rank, error)
       if (allocated(error)) then
          words = weakness_of_bodies(model)

@@ -81,6 +81,7 @@ module field_problem
       type(tail_matrix_type) :: schur                         !! what is left on the tail
       integer :: factored = 0                                 !! how often
       integer :: lost_node = 0   !! where a singular matrix shows, if that is known
+      integer, private :: analysed = 0                        !! numbering that the solver serves
       logical, private :: is_factored = .false.
    contains
       procedure :: renumber
@@ -128,8 +129,13 @@ contains
       type(field_problem_type), intent(in) :: problem
 
       if (self%numbering == problem%numbering) return
-      call self%release_tail()
-      if (self%division /= problem%division%version) call self%release()
+      if (self%division == 0 .or. self%division /= problem%division%version) then
+         call self%release()
+      else
+         ! The pattern is mostly the same wherever faces that slide are, and the solver serves.
+         self%is_factored = .false.
+         self%schur = tail_matrix_type()
+      end if
       if (allocated(self%rank)) deallocate (self%rank)
       self%numbering = problem%numbering
    end subroutine renumber
@@ -194,6 +200,11 @@ contains
       else
          lower = problem%matrix_of_unknowns(added)
       end if
+      if (allocated(self%solver) .and. self%analysed /= self%numbering) then
+         if (.not. self%solver%is_for(lower, problem%map%tail, problem%map%last)) &
+            call self%release_tail()
+      end if
+      self%analysed = self%numbering
       if (.not. allocated(self%solver)) then
          call choose_solver(problem, solver_kind, self%solver)
          if (allocated(node_rank) .and. .not. allocated(self%rank)) then
@@ -517,11 +528,9 @@ contains
       type(field_problem_type), intent(in) :: problem     !! that it is of
       real(dp), intent(in) :: on_tail(:, :)               !! (tail, columns)
       real(dp) :: values(problem%matrix%row_count, size(on_tail, 2))   !! (dofs, columns)
-      real(dp) :: none(problem%matrix%row_count)
       real(dp), allocatable :: solution(:, :)
       integer :: k
 
-      none = 0.0_dp
       allocate (solution(problem%map%equations, size(on_tail, 2)))
       if (problem%division%is_tail()) then
          solution = on_tail
@@ -529,7 +538,7 @@ contains
          call self%solver%extend(on_tail, solution)
       end if
       do k = 1, size(on_tail, 2)
-         values(:, k) = problem%map%expand(solution(:, k), none)
+         values(:, k) = problem%map%expand(solution(:, k))
       end do
    end function extended_to_kept
 
@@ -614,7 +623,7 @@ contains
       end if
       if (.not. present(welded)) return
       do k = 1, size(forces, 2)
-         welded(:, k) = problem%map%expand(solution(:, k), 0.0_dp*forces(:, k))
+         welded(:, k) = problem%map%expand(solution(:, k))
       end do
    end subroutine condense_kept
 

@@ -288,15 +288,14 @@ contains
       type(reduced_bodies_type), intent(in) :: bodies
       real(dp), intent(in) :: on_tail(:, :)               !! (thermal tail, n) [temperature]
       real(dp) :: mean(size(bodies%points%slave), size(on_tail, 2))   !! (m, n)
-      integer :: i, k
+      integer :: k
 
       if (.not. self%schur%is_sparse()) then
          mean = product_of(self%jump_mean, on_tail)
          return
       end if
       do k = 1, size(on_tail, 2)
-         mean(:, k) = bodies%points%means(bodies%thermal%map%expand(on_tail(:, k), [(0.0_dp, &
-            i=1, bodies%thermal%matrix%row_count)]))
+         mean(:, k) = bodies%points%means(bodies%thermal%map%expand(on_tail(:, k)))
       end do
    end function means_of_tail
 

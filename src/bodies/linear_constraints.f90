@@ -68,14 +68,18 @@ module linear_constraints
 
 contains
 
-   !> Values of all degrees of freedom, T v + B g.
+   !> Values of all degrees of freedom, T v + B g, or T v alone.
    pure function expand(self, unknowns, given) result(values)
       class(linear_constraints_type), intent(in) :: self
       real(dp), intent(in) :: unknowns(:)           !! (equations) v
-      real(dp), intent(in) :: given(:)              !! (dofs) prescribed values, others not used
-      real(dp) :: values(size(given))               !! (dofs)
+      real(dp), intent(in), optional :: given(:)    !! (dofs) prescribed values, others not used
+      real(dp) :: values(self%by_unknowns%count)    !! (dofs)
 
-      values = self%supported(given)
+      if (present(given)) then
+         values = self%supported(given)
+      else
+         values = 0.0_dp
+      end if
       call add_rows(self%by_unknowns, self%with_unknowns, unknowns, values)
    end function expand
 

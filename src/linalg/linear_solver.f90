@@ -29,6 +29,7 @@ module linear_solver
       integer :: lost_unknown = 0        !! leading unknown without a pivot, where one is known
       real(dp), allocatable :: schur(:, :) !! (tail, tail) Schur complement, both triangles
    contains
+      procedure :: is_for
       procedure(analyse_interface), deferred :: analyse
       procedure(factor_interface), deferred :: factor
       procedure(condense_interface), deferred :: condense
@@ -105,14 +106,23 @@ contains
       class(linear_solver_type), intent(in) :: solver
       type(sparse_matrix_type), intent(in) :: lower
       type(error_type), allocatable, intent(out) :: error
-      logical :: same
 
-      same = size(lower%row_start) == size(solver%row_start) .and. &
-         size(lower%column) == size(solver%column)
-      if (same) same = all(lower%row_start == solver%row_start) .and. &
-         all(lower%column == solver%column)
-      if (.not. same) call set_error(error, status_internal, &
-         'the pattern of a matrix differs from that analysed')
+      if (.not. solver%is_for(lower, solver%tail, solver%joined)) call set_error(error, &
+         status_internal, 'the pattern of a matrix differs from that analysed')
    end subroutine check_pattern
+
+   !> Whether what was analysed is the pattern of a matrix.
+   pure logical function is_for(self, lower, tail, joined)
+      class(linear_solver_type), intent(in) :: self      !! analysed
+      type(sparse_matrix_type), intent(in) :: lower      !! lower triangle by rows
+      integer, intent(in) :: tail                        !! number of tail unknowns
+      integer, intent(in) :: joined                      !! unknowns that are eliminated last
+
+      is_for = tail == self%tail .and. joined == self%joined .and. &
+         size(lower%row_start) == size(self%row_start) .and. &
+         size(lower%column) == size(self%column)
+      if (is_for) is_for = all(lower%row_start == self%row_start) .and. &
+         all(lower%column == self%column)
+   end function is_for
 
 end module linear_solver

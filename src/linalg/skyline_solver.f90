@@ -106,6 +106,9 @@ contains
          do k = lower%row_start(row), lower%row_start(row + 1) - 1
             if (abs(lower%value(k) - self%factored(k)) <= 0.0_dp) cycle
             first = min(first, max(self%position(row), self%position(lower%column(k))))
+            if (first >= self%columns%first_column(2)) cycle
+            first = 1
+            return
          end do
       end do
       if (first <= self%order) first = self%columns%first_column(self%columns%panel(first))
