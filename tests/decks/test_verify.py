@@ -314,3 +314,11 @@ def test_the_uncertainty_of_a_check_is_that_of_its_own_body(tmp_path):
         run("run", "--quiet", deck, "--out", tmp_path)
         said[name] = re.search(r"found: +(\S+ \+- \S+)", deck.with_suffix(".lst").read_text())[1]
     assert said["beside"] == said["alone"]
+
+
+def test_the_document_lists_all_kinds(tmp_path):
+    told = run("check", write(tmp_path / "deck.inp", ["*VERIFY, KIND=OTHER", "NT, 1, LAST"])).stderr
+    known = re.search(r"unknown KIND=OTHER of \*VERIFY; known: (.*)", told)[1].split(", ")
+    text = (CYLINDER.parents[2] / "docs/deck/output.md").read_text()
+    listed = re.search(r"origin of the expected value:([^;]*);", text)[1]
+    assert re.split(r",\s+|\s+or\s+", listed.strip()) == known
