@@ -30,8 +30,8 @@ module accuracy_rounds
 
    !> Least scale of a value: parts of the largest one so far, and of those of other interfaces.
    real(dp), parameter :: early = 0.25_dp, beside_others = 0.01_dp
-   !> Rounds that leave more than this part of the excess came no nearer to a target; two of them are
-   !> the last, from this round on.
+   !> Rounds that leave more than this part of the excess came no nearer to a target; two of them
+   !> are the last, from this round on.
    real(dp), parameter :: nearer = 0.7_dp
    integer, parameter :: least_rounds = 4
    integer, parameter, public :: most_levels = 2   !! divisions of an element in one round
@@ -407,14 +407,12 @@ contains
    !> without limit.
    pure logical function stands_still(self)
       class(accuracy_rounds_type), intent(in) :: self
-      integer :: d
+      integer :: d, n
 
-      stands_still = size(self%rounds) >= least_rounds
-      if (.not. stands_still) return
-      do d = 1, size(self%demands)
-         if (self%rounds(size(self%rounds))%excess(d) > 1.0_dp .and. self%came_nearer(d, 2)) &
-            stands_still = .false.
-      end do
+      n = size(self%rounds)
+      stands_still = n >= least_rounds
+      if (stands_still) stands_still = .not. any([(self%rounds(n)%excess(d) > 1.0_dp .and. &
+         self%came_nearer(d, 2), d=1, size(self%rounds(n)%findings, 1))])
    end function stands_still
 
    !> Whether the last rounds brought a target nearer; so does the first one.

@@ -66,7 +66,7 @@ module adaptive_rounds
       end subroutine take_increment
    end interface
 
-   !> Part of the squared error that is marked at most; all but half of what a target allows
+   !> Part of the squared error that is marked, in the first round but half of what a target allows
    real(dp), parameter :: most_marked = 0.8_dp
    real(dp), parameter :: part = 0.4_dp         !! of a target that the resolution of edges may take
    real(dp), parameter :: reach = 0.5_dp        !! of the contact length: where influence falls
@@ -187,7 +187,7 @@ contains
       type(increment_record_type), intent(in) :: record
       type(finding_type) :: finding
       real(dp), allocatable :: edges(:)
-      real(dp) :: length, uncertainty, weight(size(self%division%levels))
+      real(dp) :: length, marked, uncertainty, weight(size(self%division%levels))
       logical :: at_faces(size(self%division%levels))
       integer :: d, levels, of_edges
 
@@ -223,9 +223,11 @@ contains
                (part*finding%allowed))/log(2.0_dp)))
             call mark_edges(self, interfaces(i), edges, max(levels, of_edges))
             weight = influence(q, model%mesh, interfaces(i), record%contacts(i))
+            marked = most_marked
+            if (size(rounds%rounds) == 1) marked = min(most_marked, 1.0_dp - 0.5_dp* &
+               finding%allowed/max(uncertainty, finding%allowed))
             where (largest_part(weight*(squared_errors(model%mesh, record%stress_error) + &
-               squared_errors(model%mesh, record%heat_flux_error)), min(most_marked, 1.0_dp - &
-               0.5_dp*finding%allowed/max(uncertainty, finding%allowed)))) of_elements = &
+               squared_errors(model%mesh, record%heat_flux_error)), marked)) of_elements = &
                max(of_elements, levels)
          end associate
       end do

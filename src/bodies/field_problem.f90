@@ -201,8 +201,9 @@ contains
          lower = problem%matrix_of_unknowns(added)
       end if
       if (allocated(self%solver) .and. self%analysed /= self%numbering) then
-         if (.not. self%solver%is_for(lower, problem%map%tail, problem%map%last)) &
+         if (.not. self%solver%is_for(lower, problem%map%tail, problem%map%last)) then
             call self%release_tail()
+         end if
       end if
       self%analysed = self%numbering
       if (.not. allocated(self%solver)) then
