@@ -26,7 +26,7 @@ from synthetic import (  # noqa: E402
 )
 
 from thercon.post import element_fields, field_colours, fields, mesh  # noqa: E402
-from thercon.post import profiles, style, tables, trade, zones  # noqa: E402
+from thercon.post import profile_legends, profiles, style, tables, trade, zones  # noqa: E402
 from thercon.post.cells import Cells  # noqa: E402
 from thercon.post.cli import main, parser, spread  # noqa: E402
 from thercon.post.errors import UserError  # noqa: E402
@@ -325,6 +325,49 @@ def test_bands_are_told_where_they_are_seen(kept, result):
             contact[key][...] = np.linspace(1.0, 2.0, len(contact[key]))[:, None]
         contact["heat_flux"][...] = 0.0
     assert words() == "Lines are means over the face"
+
+
+@pytest.fixture
+def turning(result):
+    """Return a result whose load, a displacement, rises from 1 to 8 and falls to 1 again."""
+    with h5py.File(result, "r+") as file:
+        load = file["history/load"]
+        load[...] = 8.0 - np.abs(np.arange(15.0) - 7.0)
+        load.attrs["label"], load.attrs["unit"] = "u_y of PIN_A-1", "cm"
+    return result
+
+
+@pytest.mark.parametrize("picture", ["courses", "history"])
+def test_a_band_over_a_load_that_turns_is_filled_on_both_ways(kept, turning, picture):
+    """Pressures from 1 to 2 going, from 1 to 3 coming back; so are those of a set of eight nodes."""
+    with h5py.File(turning, "r+") as file:
+        contact, count = file["contact/CYLINDER"], len(file["history/load"])
+        high = np.where(np.arange(count) < 7, 2.0, 3.0)[:, None]
+        contact["pressure"][...] = 1.0 + (high - 1.0) * np.linspace(0.0, 1.0, contact["pressure"].shape[1])
+        nodes = file.create_group("history/nodes/TOP")
+        nodes["node"], nodes["time"] = np.arange(1, 9), file["history/time"][()]
+        nodes["increment"] = np.arange(1, count + 1)
+        nodes["temperature"] = 1.0 + (high - 1.0) * np.linspace(0.0, 1.0, 8)
+    (figure,) = kept(picture, turning, "--over", "load")
+    bands = figure.axes[0].collections
+    assert len(bands) == 2
+    for place, filled in (((4.0, 1.5), 2), ((4.0, 2.5), 1), ((4.0, 3.5), 0)):
+        assert sum(path.contains_point(place) for band in bands for path in band.get_paths()) == filled
+    assert figure.axes[0].get_xlabel() in ("", "Displacement y of PIN_A-1 (cm)")
+
+
+def test_a_band_over_the_time_is_one(kept, result):
+    (figure,) = kept("courses", result, "--over", "time")
+    assert len(figure.axes[0].collections) == 1
+
+
+@pytest.mark.parametrize("picture", ["courses", "history"])
+def test_a_deck_without_a_load_has_no_courses_over_it(fail, result, picture, tmp_path):
+    with h5py.File(result, "r+") as file:
+        file["history/load"].attrs["label"] = "time"
+        file["history/pre_tension"] = np.ones(15)
+    said = fail(picture, result, "--over", "load", "--out", tmp_path)
+    assert "the deck has no LOAD= on *OPTIONS" in said
 
 
 def test_faces_that_slide_are_drawn_where_they_are_with_their_forces(tabulate, result, tmp_path):
@@ -1323,6 +1366,46 @@ def test_a_load_that_no_increment_has_gives_the_nearest_and_says_so(said, fail, 
     assert "no increment 99: there are 1 to 15" in fail("profiles", result, "--increment", 99)
 
 
+def test_a_load_of_several_increments_says_which_it_is_of(said, turning):
+    note = f"plot: note: {turning}: increments {{}} have load {{}}; the last is drawn, --increment draws another\n"
+    for picture in ("profiles", "fields"):
+        assert said(picture, turning, "--load", 5, 8)[1] == note.format("5, 11", 5)
+        assert said(picture, turning, "--increment", 5) == ([f"case.{picture}-5-increment-5"], "")
+    with h5py.File(turning, "r+") as file:
+        file["history/load"][:4] = 5.0
+    assert said("profiles", turning, "--load", 5)[1] == note.format("1 to 5, 11", 5)
+    with h5py.File(turning, "r+") as file:
+        file["history/load"][...] = np.arange(15) % 2
+    assert said("profiles", turning, "--load", 0)[1] == note.format("1, 3, 5, ..., 13, 15", 0)
+
+
+def test_curves_outside_the_range_of_a_panel_are_told(said, result):
+    """At 60 the pressure is at most 90 sqrt(60/900) = 23 MPa; at the other loads it passes 30."""
+    with h5py.File(result, "r+") as file:
+        file["contact/CYLINDER/pressure"][...] += 0.1   # closed throughout: no fall to zero
+        file["contact/CYLINDER/edges_contact"][...] = np.nan
+    note = f"plot: note: {result}: panel of pressure: {{}} curves lie outside {{}}\n"
+    call = ["profiles", result, "--load", 60, 300, 900, "--values", "pressure"]
+    assert said(*call, 0, 500)[1] == ""
+    assert said(*call, 30, 500)[1] == note.format("1 of 3", "30 to 500")
+    assert said(*call, -5, 0)[1] == note.format("3 of 3", "-5 to 0")
+
+
+def test_numbers_of_legends_and_footers_have_minus_signs(turning):
+    with h5py.File(turning, "r+") as file:
+        file["history/load"][...] *= -1.0
+    with Result(turning) as opened:
+        assert opened.load_words(4) == "displacement y of PIN_A-1 \N{MINUS SIGN}5 cm, time 300"
+        assert opened.units.short_load(opened.load_label, -0.00002) == "\N{MINUS SIGN}2e\N{MINUS SIGN}05 cm"
+        assert opened.row_words(7) == [-8.0]
+
+
+def test_edges_of_stick_are_dashed_unlike_friction():
+    _, (_, dashes) = profile_legends.EDGES["edges_stick"]
+    for _, other in (line for line in profile_legends.QUANTITY_LINES.values() if line != "solid"):
+        assert len(dashes) != len(other)
+
+
 def test_of_loads_that_are_small_beside_the_last_the_one_asked_for_is_drawn(said, result):
     """Times of a shock begin with less than a millionth of the end."""
     with h5py.File(result, "r+") as file:
@@ -1387,6 +1470,36 @@ def test_convergence_has_ticks_at_increments_and_room_above_g(laid_out, tmp_path
         assert [tick for tick in axes.get_xticks() if low <= tick <= high] == ticks
         frame, top = axes.transAxes.transform((0, 1))[1], axes.transData.transform((1, 1.0))[1]
         assert frame - top > 0.05 * axes.get_window_extent().height
+
+
+def test_convergence_marks_a_solve_that_is_longer_than_others_alone(kept, result):
+    def words():
+        (figure,) = kept("convergence", result)
+        return [text.get_text() for text in figure.axes[0].get_legend().get_texts()]
+
+    assert words() == ["solves of accepted increments"]
+    with h5py.File(result, "r+") as file:
+        increment = file["convergence/increment"]
+        for key in file["convergence"]:   # a fifth iteration of the last one
+            values = file[f"convergence/{key}"][()]
+            del file[f"convergence/{key}"]
+            file[f"convergence/{key}"] = np.append(values, values[-1] + (key == "iteration"))
+    assert words()[1:] == ["the longest, in increment 15"]
+    with h5py.File(result, "r+") as file:   # one of the first goes to the second increment
+        increment = file["convergence/increment"]
+        increment[...] = np.where(np.arange(61) < 5, 1, increment[()])
+        file["convergence/iteration"][:8] = [1, 2, 3, 4, 5, 1, 2, 3]
+    assert words()[1:] == ["one of the 2 longest, in increment 1"]
+
+
+def test_convergence_shows_g_where_it_relaxes(kept, result):
+    (figure,) = kept("convergence", result)
+    assert [axes.get_ylabel() for axes in figure.axes][2:] == ["Relaxation $g$"]
+    with h5py.File(result, "r+") as file:
+        file["convergence/g_min"][...] = 0.999
+    (figure,) = kept("convergence", result)
+    assert len(figure.axes) == 2 and figure.axes[-1].get_xlabel() == "Increment"
+    assert np.isclose(figure.axes[-1].get_xlim()[1], 15.9)
 
 
 def test_convergence_without_iterations_says_so(fail, result):

@@ -632,7 +632,8 @@ def test_a_coupling_below_the_accuracy_of_its_gain_has_no_chart(synthetic, brows
 
         browser.open(synthetic(couple))
         words = browser.run("return document.getElementById('histories').textContent")
-        assert words.count("Coupling gain") == charts
+        assert words.count("oupling gain") == charts
+        assert ("Largest real coupling gain" in words) == (charts > 0)
 
 
 def test_checks_of_an_earlier_round_are_told_without_a_table(tmp_path):
@@ -688,8 +689,46 @@ def test_a_worn_volume_says_what_estimates_it(synthetic, full, reason):
             file.require_group("uncertainty/increment")
             file["uncertainty/time"] = file["history/time"][()]
 
-    row = re.search(r'<th scope="row"[^>]*>worn volume slave</th>(.*?)</tr>', synthetic(wear).read_text())[1]
+    row = re.search(r'<th scope="row"[^>]*>worn volume of the slave</th>(.*?)</tr>', synthetic(wear).read_text())[1]
     assert re.findall(r"<td[^>]*>(.*?)</td>", row)[1] == f"no estimate: {reason}"
+
+
+def test_the_totals_have_the_heat_of_friction_and_no_volume_where_nothing_is_worn(synthetic, browser):
+    """In the table as beside the slider, in the order of the summary."""
+    def rub(file):
+        load = file["history/load"][()]
+        contact = file["contact/CYLINDER"]
+        contact["worn_volume_slave"], contact["worn_volume_master"] = 1e-3 * load, 0.0 * load
+        contact["normal_force"], contact["heat_rate"] = 10.0 + load, 20.0 + load
+        file["history/heat_friction"] = 0.5 * load
+
+    page = synthetic(rub)
+    rows = dict(re.findall(r'<th scope="row"[^>]*>([^<]*)</th><td[^>]*>([^<]*)</td>', page.read_text()))
+    names = ["normal force", "heat rate", "peak pressure", "edge of contact, s", "edge of stick, s",
+             "worn volume of the slave", "heat of friction"]
+    assert [name for name in rows if name in names or "worn" in name] == names
+    assert rows["heat of friction"] == "450"
+    browser.open(page)
+    words = browser.run("return document.getElementById('totals').textContent")
+    assert "heat of friction 450 W" in words and "master" not in words
+    charts = browser.run("return document.getElementById('histories').textContent")
+    assert "Heat of friction" in charts and "Heat friction" not in charts
+
+
+def test_charts_of_what_is_rounding_beside_its_kind_are_left_out(synthetic, browser):
+    """Imbalances are relative to the largest rate, whatever its unit makes of it."""
+    for size, are_shown in ((0.5e-9, False), (2e-9, True)):
+        def change(file, size=size):
+            for key, value in (("heat_in", 1e-3), ("heat_imbalance_pointwise", size), ("ALLSE", 2.0),
+                               ("ALLFD", 2.0 * size)):
+                file[f"history/{key}"] = np.full(15, value)
+            file["contact/CYLINDER/heat_flux"][...] = 0.0
+
+        browser.open(synthetic(change))
+        charts = browser.run("return document.getElementById('histories').textContent")
+        assert "Elastic energy (ALLSE)" in charts and "Heat in" in charts
+        for words in ("Imbalance of heat at the end of the increment", "Energy dissipated by friction (ALLFD)"):
+            assert (words in charts) == are_shown
 
 
 def test_an_edge_at_the_end_of_the_face_has_no_uncertainty(tmp_path):

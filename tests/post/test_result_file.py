@@ -544,11 +544,11 @@ def test_a_drawing_is_in_the_file_with_its_body_on_the_left_and_follows_its_node
 
 
 @pytest.mark.parametrize(("options", "unit", "shown"), [
-    ('LOAD=TEMPERATURE_FACE,2, UNITS="mm MPa W K"', "mm", "U_y of TEMPERATURE_FACE (mm)"),
+    ('LOAD=TEMPERATURE_FACE,2, UNITS="mm MPa W K"', "mm", "Displacement y of TEMPERATURE_FACE (mm)"),
     ('LOAD=TEMPERATURE_FACE,11, UNITS="mm MPa W K"', "K", "Temperature of TEMPERATURE_FACE (K)"),
     ('UNITS="mm MPa W K"', "time", "Time"),
     ('UNITS="mm MPa W K s"', "s", "Time (s)"),
-    ('LOAD=TEMPERATURE_FACE,2', "length", "U_y of TEMPERATURE_FACE"),
+    ('LOAD=TEMPERATURE_FACE,2', "length", "Displacement y of TEMPERATURE_FACE"),
     ('LOAD=TEMPERATURE_FACE,11', "temperature", "Temperature of TEMPERATURE_FACE"),
 ])
 def test_the_load_axis_has_the_unit_of_what_it_follows(tmp_path, options, unit, shown):

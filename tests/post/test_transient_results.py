@@ -81,7 +81,7 @@ def test_the_slider_of_a_page_has_the_true_time(result, browser):
     assert np.ptp(starts) > 100
     rates = browser.run("""return [...document.querySelectorAll('figure[id^=history]')].map(
         each => each.textContent)""")
-    for name in ("dilatation", "in", "out", "stored"):
+    for name in ("that strains take up", "in", "out", "stored"):
         (words,) = (words for words in rates if f"Heat {name}:" in words)
         assert words.endswith(" W")
     assert browser.messages() == []

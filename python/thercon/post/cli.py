@@ -139,7 +139,7 @@ def add_loads(picture):
         type=float,
         metavar="LOAD ...",
         help="load level, or several, on the axis of /history/load (default: the last); where no "
-        "increment has it, the nearest is drawn and named",
+        "increment has it, the nearest is drawn and named; of several that have it the last",
     )
     picture.add_argument(
         "--increment",

@@ -47,7 +47,15 @@ class Run:
             kind = "cut back" if cut_backs[rows[0]] < last[at] else kind
             self.attempts.append(Attempt(at, count[at], kind, rows))
         accepted = self.of_kind("accepted")
-        self.slowest = max(accepted, key=lambda attempt: len(attempt.rows), default=None)
+        counts = [len(attempt.rows) for attempt in accepted]
+        longest = max(counts, default=0)
+        self.equals = counts.count(longest)  # of the longest solves
+        self.slowest = accepted[counts.index(longest)] if self.equals < len(counts) else None
+
+    @property
+    def relaxes(self):
+        """Whether some g differs from 1.00."""
+        return bool(min(self.data["g_min"]) < 0.995 or max(self.data["g_max"]) > 1.005)
 
     def of_kind(self, kind):
         """Return the solves of one kind."""
@@ -77,21 +85,27 @@ class Run:
 def draw(results, options):
     """Draw the convergence of one result, or of several side by side; return the files written."""
     runs = [Run(result) for result in results]
+    heights = [1.7, 1.0, 1.0][: 2 + any(run.relaxes for run in runs)]
     figure = plt.figure(
         layout="constrained",
-        figsize=(style.DOUBLE_COLUMN * (0.62 if len(runs) == 1 else 0.9), 5.6),
+        figsize=(style.DOUBLE_COLUMN * (0.62 if len(runs) == 1 else 0.9), 5.6 if len(heights) > 2 else 4.1),
     )
-    grid = figure.add_gridspec(3, len(runs), height_ratios=[1.7, 1.0, 1.0])
+    grid = figure.add_gridspec(len(heights), len(runs), height_ratios=heights)
     first = None
     for column, run in enumerate(runs):
         first = draw_residuals(figure, grid[0, column], run, first)
     counts = figure.add_subplot(grid[1, :])
-    relaxation = figure.add_subplot(grid[2, :], sharex=counts)
+    relaxation = figure.add_subplot(grid[2, :], sharex=counts) if len(heights) > 2 else None
     for number, run in enumerate(runs):
         shift = 0.3 * (number - 0.5 * (len(runs) - 1))
         draw_counts(counts, run, number, shift)
-        draw_relaxation(relaxation, run, number, shift)
-    finish(counts, relaxation, runs)
+        if relaxation:
+            draw_relaxation(relaxation, run, number, shift)
+    finish_counts(counts, runs)
+    if relaxation:
+        counts.tick_params(labelbottom=False)
+        finish_relaxation(relaxation, runs)
+    figure.axes[-1].set_xlabel("Increment")
     names = [style.plain(run.result.name) for run in runs] if len(runs) > 1 else [""]
     for axes, letter, name in zip(figure.axes, "abcdefgh", [*names, "", ""]):
         style.panel_title(axes, name, letter)
@@ -123,10 +137,11 @@ def draw_residuals(figure, place, run, first):
 def residual_handles(run):
     """Return the legend's entries for the kinds of solves that are there."""
     handles = []
-    if len(run.of_kind("accepted")) > 1:
+    if len(run.of_kind("accepted")) > (run.slowest is not None):
         handles.append(Line2D([], [], label="solves of accepted increments", **KINDS["accepted"]))
     if run.slowest:
-        label = f"the longest, in increment {run.slowest.increment}"
+        which = "the longest" if run.equals == 1 else f"one of the {run.equals} longest"
+        label = f"{which}, in increment {run.slowest.increment}"
         handles.append(Line2D([], [], label=label, **KINDS["slowest"]))
     if run.of_kind("cut back"):
         handles.append(Line2D([], [], label="ended by cut-back", **KINDS["cut back"]))
@@ -174,21 +189,23 @@ def series_looks(number):
     return {"color": colour, "marker": style.MARKERS[number % 6], "mfc": "white", "ms": 3.0}
 
 
-def finish(counts, relaxation, runs):
-    """Label and scale the two lower panels."""
+def finish_counts(counts, runs):
+    """Label and scale the panel of iterations."""
     counts.set_ylabel("Iterations of all solves")
     most = max(np.unique(run.data["increment"], return_counts=True)[1].max() for run in runs)
     counts.set_ylim(0, 1.12 * most)
-    counts.tick_params(labelbottom=False)
     counts.yaxis.set_major_locator(whole_numbers(5))
     if len(runs) > 1:
         counts.legend(loc="best", ncols=len(runs))
-    relaxation.set_ylabel("Range of $g$")
-    relaxation.set_xlabel("Increment")
-    relaxation.xaxis.set_major_locator(whole_numbers())
+    counts.xaxis.set_major_locator(whole_numbers())
     last = max(np.max(run.data["increment"]) for run in runs)
     room = max(0.9, 0.02 * last)
-    relaxation.set_xlim(1 - room, last + room)
+    counts.set_xlim(1 - room, last + room)
+
+
+def finish_relaxation(relaxation, runs):
+    """Label and scale the panel of g."""
+    relaxation.set_ylabel("Relaxation $g$")
     least = min(np.min(run.data["g_min"]) for run in runs)
     if 0.0 < least < 0.02:
         relaxation.set_yscale("log")

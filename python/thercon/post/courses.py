@@ -121,7 +121,7 @@ class Picture:
         for words, values in curves:
             colour, line = LOOKS[ORDER.get(words.strip("|\N{MINUS SIGN}"), 0)]
             if values.ndim == 2:
-                axes.fill_between(self.at, *ends(values), color=colour, alpha=0.15, linewidth=0)
+                style.band(axes, self.at, *ends(values), colour)
             axes.plot(self.at, self.mean(values), color=colour, ls=line, label=words or None)
         if len(curves) > 1:
             axes.legend(**RIGHT_ABOVE, ncols=COLUMNS, handlelength=1.8, columnspacing=1.2)

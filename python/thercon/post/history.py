@@ -82,8 +82,8 @@ def panel(axes, at, history, key):
     if len(curves) > MOST_CURVES:
         values = history.values[key]
         known = np.isfinite(values).any(axis=1)
-        axes.fill_between(at[known], np.nanmin(values[known], axis=1),
-                          np.nanmax(values[known], axis=1), color=style.BLACK, alpha=0.15, linewidth=0)
+        style.band(axes, at[known], np.nanmin(values[known], axis=1),
+                   np.nanmax(values[known], axis=1), style.BLACK)
         axes.plot(at[known], np.nanmean(values[known], axis=1), color=style.BLACK, **marks)
         return style.has_band(values[known])
     for number, (words, values) in enumerate(curves):

@@ -8,7 +8,7 @@ from .result import OPEN, SLIP, STICK
 
 EDGES = {
     "edges_contact": ("edge of contact", "solid"),
-    "edges_stick": ("edge of stick", (0, (2.5, 1.5))),
+    "edges_stick": ("edge of stick", (0, (5, 1.5, 1, 1.5))),
 }
 QUANTITY_LINES = {
     "pressure": "solid",

@@ -14,6 +14,7 @@ FACES = ("slave_temperature", "master_temperature")
 CURVES = ("pressure", "shear", *FACES, "heat_flux", "wear_slave", "wear_master")
 TRACTIONS = ("pressure", "shear", "mu_p")   # end at the sharpened edges of contact
 WORN = {"wear_slave": "slave", "wear_master": "master"}
+CURVE_ORDERS = (2, 4)   # zorder of curves and of digitised ones; marks and edges have others
 PASSED_OVER = ("x", "y", "s", "contact", "increment", "load", "status", "mu_p")
 
 
@@ -99,6 +100,7 @@ class Picture:
                 if name in quantities:
                     axes.set(ylim=(low, high))
                     plt.setp(axes.lines, clip_on=True)
+                    self.note_hidden(axes, name, low, high)
         profile_legends.add(self, panels, kinds, overlays)
         units = self.result.units
         unit = units.names.get("length", "")
@@ -115,6 +117,17 @@ class Picture:
             late = ", ".join(t for t, row in zip(times, self.rows) if not self.result.judged[row])
             figure.supxlabel(f"{late}:\n{UNJUDGED}", fontsize=8.5)
         return figure
+
+    def note_hidden(self, axes, name, low, high):
+        """Add a note of the curves of a panel that lie outside the range of its values."""
+        curves = [line.get_ydata()[self.in_window(line.get_xdata())] for line in axes.lines
+                  if line.get_zorder() in CURVE_ORDERS]
+        curves = [values[~np.isnan(values)] for values in curves]
+        curves = [values for values in curves if values.size]
+        hidden = sum(values.min() > high or values.max() < low for values in curves)
+        if hidden:
+            self.result.notes.append(f"{self.result.path}: panel of {name}: {hidden} of {len(curves)} "
+                                     f"curves lie outside {low:g} to {high:g}")
 
     def panel_kinds(self):
         """Return the quantities of each panel; with several curves friction has its own."""
@@ -174,7 +187,11 @@ class Picture:
 
     def inside(self, row):
         """Return which pairs lie inside the window."""
-        return (self.at(row) >= self.window[0]) & (self.at(row) <= self.window[1])
+        return self.in_window(self.at(row))
+
+    def in_window(self, at):
+        """Return which places lie inside the window."""
+        return (at >= self.window[0]) & (at <= self.window[1])
 
     def two_signs(self):
         """Whether friction has both signs along the contact at these loads."""

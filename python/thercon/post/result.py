@@ -14,7 +14,7 @@ from .checked_file import need, numbers, open_checked
 from .errors import UserError, nearest_name
 from .joined_contacts import common, join
 from .units import UNIT_NAMES, Units, unit_of
-from .words import place_words, printable
+from .words import number_text, place_words, printable, runs_text
 
 OPEN, SLIP, STICK = 0, 1, 2
 
@@ -70,10 +70,24 @@ COMPONENTS = {"displacement": 3, "mode_displacement": 3, "stress": 4, "principal
               "heat_flux": 3}
 
 
+SPOKEN = {  # where a name says too little
+    "heat_friction": "heat of friction", "heat_dilatation": "heat that strains take up",
+    "heat_imbalance_pointwise": "imbalance of heat at the end of the increment",
+    "coupling_gain_max": "largest real coupling gain",
+    "growth_rate": "growth rate of the leading mode", "period": "period of the leading mode",
+    "worn_volume_slave": "worn volume of the slave",
+    "worn_volume_master": "worn volume of the master",
+    "ALLSE": "elastic energy (ALLSE)", "ALLWK": "work of all loads (ALLWK)",
+    "ALLFD": "energy dissipated by friction (ALLFD)",
+    "ALLPD": "energy dissipated by plasticity (ALLPD)",
+    "ALLCD": "energy dissipated by creep (ALLCD)",
+}
+
+
 def words_of(name):
     """Return the name of a quantity as one speaks it."""
     spoken = re.sub("^edge_", "edge of ", name).replace("pre_tension", "pre-tension")
-    return spoken.replace("_", " ")
+    return SPOKEN.get(name, spoken.replace("_", " "))
 
 
 def uncertainty_of(group):
@@ -325,12 +339,16 @@ class Result:
     def load_label(self):
         """What the load axis shows, as the file names it."""
         label = text(self.file["history"]["load"].attrs.get("label", "load"))
+        label = re.sub(r"^u_([xy]) of", r"displacement \1 of", label)
         return label.replace("$", "")  # which begins a formula in a picture
 
     def abscissa(self, over=None):
         """Return label and values, one an increment, of the axis that curves over the run have: time or
         load; where `over` is neither, time where heat is stored or the load turns, else the load."""
         load = self.history["load"]
+        if over == "load" and self.load_label == "time":
+            raise UserError(f"{self.path}: the deck has no LOAD= on *OPTIONS, so its load is the time: "
+                            "give it LOAD=nset,dof, or leave --over load out")
         rises = np.all(np.diff(load) > 0.0) or np.all(np.diff(load) < 0.0)
         if over == "time" or over is None and ("heat_stored" in self.history or not rises):
             return self.units.label("Time", "time"), self.history["time"]
@@ -582,7 +600,11 @@ class Result:
         if f"{nearest:g}" != f"{load:g}":
             self.notes.append(f"{self.path}: no increment{' with fields' * (there.size < loads.size)} "
                               f"has load {load:g}; the nearest, {nearest:g}, is drawn")
-        return int(there[np.abs(loads[there] - nearest) <= room][-1])
+        same = there[np.abs(loads[there] - nearest) <= room]
+        if same.size > 1:
+            self.notes.append(f"{self.path}: increments {runs_text(same + 1)} have load {nearest:g}; the "
+                              "last is drawn, --increment draws another")
+        return int(same[-1])
 
     def load_words(self, row):
         """Return load and time of a row of /history in words, and what is not known there."""
@@ -590,7 +612,7 @@ class Result:
         if self.load_label != "time":
             words += f", {self.units.time_value(float(self.history['time'][row]))}"
         factor = float(self.load_factors[row])
-        words += "" if np.isnan(factor) else f", load factor {factor:g}"
+        words += "" if np.isnan(factor) else f", load factor {number_text(factor)}"
         return words if self.judged[row] else f"{words}\n({UNJUDGED})"
 
     def row_words(self, row):

@@ -166,6 +166,15 @@ def mark_judged(axes, abscissa, judged):
         axes.axvline(place, color=GREY, ls=":", lw=0.8, zorder=0.5)
 
 
+def band(axes, at, low, high, colour):
+    """Fill between low and high over an abscissa that may turn: each way has a band of its own."""
+    ways = np.sign(np.diff(at))
+    turns = [0, *np.flatnonzero(np.diff(ways)) + 1, len(at) - 1]
+    for first, last in zip(turns, turns[1:]):
+        part = slice(first, last + 1)
+        axes.fill_between(at[part], low[part], high[part], color=colour, alpha=0.15, linewidth=0)
+
+
 def has_band(values):
     """Whether the range of values (rows, members) is seen beside their changes from row to row."""
     spread = np.nanmax(np.nanmax(values, axis=1) - np.nanmin(values, axis=1))

@@ -2,6 +2,8 @@
 
 import re
 
+from .words import number_text
+
 UNIT_NAMES = ("length", "stress", "power", "temperature", "time")
 
 
@@ -35,17 +37,17 @@ class Units:
 
     def load_value(self, label, value):
         """Return one load in words, such as "temperature of TOP 540 C"."""
-        return f"{label} {value:g} {self.load_unit()}".strip()
+        return f"{label} {number_text(value)} {self.load_unit()}".strip()
 
     def short_load(self, label, value):
         """Return one load in few words: with its unit, or its name where it is the time."""
         if self.load is None:
             return self.load_value(label, value)
-        return f"{value:g} {self.load_unit()}".strip()
+        return f"{number_text(value)} {self.load_unit()}".strip()
 
     def time_value(self, time):
         """Return a time in words, such as "time 60 s"."""
-        return f"time {time:g} {self.names.get('time', '')}".rstrip()
+        return f"time {number_text(time)} {self.names.get('time', '')}".rstrip()
 
     def load_unit(self):
         """Return the unit of the load axis, or an empty text."""

@@ -31,6 +31,19 @@ def known_name(name, known):
     return next((spelled[each] for each in meant if each in spelled), name)
 
 
+def number_text(value):
+    """Return a number as legends and footers show it, with a minus sign."""
+    return f"{value:g}".replace("-", "\N{MINUS SIGN}")
+
+
+def runs_text(numbers):
+    """Return ascending whole numbers in words, such as "1 to 10, 41"; of many runs the ends."""
+    numbers = np.asarray(numbers)
+    runs = np.split(numbers, np.flatnonzero(np.diff(numbers) > 1) + 1)
+    found = [f"{run[0]} to {run[-1]}" if len(run) > 1 else f"{run[0]}" for run in runs]
+    return ", ".join(found if len(found) <= 6 else [*found[:3], "...", *found[-2:]])
+
+
 def printable(words):
     """Return words with U+FFFD for each character that no page, picture or table can hold."""
     return NOT_SHOWN.sub("\N{REPLACEMENT CHARACTER}", words)

@@ -3,6 +3,7 @@
 import numpy as np
 
 from . import style
+from .words import number_text
 
 FILLED = 0.8  # of the height of a row; the rest parts it from the next
 ROW, NAME = 0.16, 0.13  # heights of a row and of its name, in inches
@@ -37,6 +38,6 @@ class Rows:
         axes.set_yticks([number + 0.5 * FILLED for number in shown],
                         [style.plain(self.names[number]) for number in shown])
         axes.tick_params(axis="y", length=0.0)
-        low, high = (f"{end:g}".replace("-", "\N{MINUS SIGN}") for end in self.ends)
+        low, high = map(number_text, self.ends)
         words = f"Each interface, upwards from ${self.along}$ = {low} to {high}"
         axes.set_ylabel(f"{words} {units.names.get('length', '')}".rstrip())

@@ -7,6 +7,7 @@ from matplotlib.ticker import MaxNLocator
 from .. import style
 from ..style import plt
 from ..units import Units
+from ..words import number_text
 from .judge import kind_of
 from .report import quantities
 
@@ -144,7 +145,7 @@ class Panel:
             self.drawn.add(self.quantity, self.a.label, block.at, name, at, block.a[rows])
             self.drawn.add(self.quantity, label, block.at, name, x, y)
             if len(blocks) > 1 and number == 0:
-                self.times.append((shade, f"{block.axis} {block.at:g}"))
+                self.times.append((shade, f"{block.axis} {number_text(block.at)}"))
         if len(blocks) == 1 and blocks[0].at is not None:
             self.note(blocks[0])
         self.axes.set_xlabel(self.units.label(f"${name}$", "length"))
@@ -206,7 +207,7 @@ class Panel:
 
     def note(self, block):
         """Name the time of what is shown."""
-        self.at = f"{block.axis} {block.at:g}"
+        self.at = f"{block.axis} {number_text(block.at)}"
 
     def finish(self, letter, only):
         """Label the ordinate, name quantity, times and the only B that is shown, if it is one."""

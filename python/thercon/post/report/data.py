@@ -18,7 +18,9 @@ from .sets import of_sets
 FIELD_NUMBERS = 1_400_000  # numbers of all fields together: at most 3.7 MB of text
 FINE = 20_000  # elements: nodes on sides cannot be seen
 DERIVED = (*PRINCIPAL, "radial", "hoop")  # left out of the pages of fine meshes
-LEAST = {"gain": 1e-6}  # eigenvalues of the coupling are accurate to this
+LEAST = {"gain": 1e-6, "imbalance": NOISE}  # gains are accurate to this, imbalances relative
+KINDS = ("imbalance", "heat", "gain", "worn", "ALL")  # in names, of what is compared
+IN_ORDER = ("normal_force", "shear_force", "heat_rate", "peak_pressure", "edge_contact", "edge_stick")
 PROFILES = ("pressure", "shear", "heat_flux", "gap", "wear_slave", "wear_master")
 OF_HEAT = ("slave_temperature", "master_temperature", "heat_flux", "gap")  # of runs of heat alone
 COLOURS = ("viridis", "inferno", "RdBu_r")
@@ -116,7 +118,7 @@ def contact_data(result, contact):
             key: packed(contact.edge_on_axis(contact[f"edge_{key}"], coordinate))
             for key in ("contact", "stick")
         },
-        "totals": totals(result, contact),
+        "totals": [*totals(result, contact), *friction_heat(result)],
     }
 
 
@@ -147,12 +149,31 @@ def hottest(contact):
     return largest(contact.data.get("slave_temperature", 0.0))
 
 
+def told_totals(contact):
+    """Return the quantities of a contact in the order of the summary, without volumes where nothing is
+    worn."""
+    found = {key: values for key, values in contact.totals().items()
+             if not key.startswith("worn_volume") or largest(values)}
+    return {key: found[key] for key in sorted(found, key=lambda key: (*IN_ORDER, key).index(key))}
+
+
+def friction_heat(result):
+    """Return the heat of friction of the model over the increments, as a total, where there is some."""
+    values = result.history.get("heat_friction", np.zeros(1))
+    if not largest(values):
+        return []
+    known, of_all = result.uncertainties("increment"), " in all" * (len(result.contact_names) > 1)
+    return [{"key": "heat_friction", "label": words_of("heat_friction") + of_all,
+             "unit": plain(result.units.names.get("power", "")), "values": listed(values),
+             "uncertainty": uncertainty(known, "heat_friction")}]
+
+
 def totals(result, contact):
     """Return the quantities of a contact over the increments; its edges are drawn elsewhere."""
     known = result.uncertainties(contact.name)
     return [{"key": key, "label": words_of(key), "unit": contact.unit(key),
              "values": listed(values), "uncertainty": uncertainty(known, key)}
-            for key, values in contact.totals().items() if not key.startswith("edge_")]
+            for key, values in told_totals(contact).items() if not key.startswith("edge_")]
 
 
 def uncertainty(known, key):
@@ -181,7 +202,7 @@ def histories(result):
             unit = plain(result.units.names.get("power", "")) if key in HEAT else ""
             found.append({"key": key, "label": capital(words_of(key)), "unit": unit,
                           "values": listed(values), "uncertainty": uncertainty(known, key)})
-    kinds = [next((kind for kind in ("heat", "gain") if kind in each["key"]),
+    kinds = [next((kind for kind in KINDS if kind in each["key"]),
                   each["key"].split("_")[-1]) for each in found]
     sizes = [largest([v or 0.0 for v in each["values"]]) for each in found]
     for kind, size in zip(kinds, sizes):

@@ -6,7 +6,7 @@ import numpy as np
 
 from ..result import ANALYSIS, NO_ANALYSIS, NO_FINER_VALUE, text, words_of
 from ..units import unit_of
-from .data import contacts_of, plain
+from .data import contacts_of, friction_heat, plain, told_totals
 from .html import html, joined
 
 FACTS = {  # attribute of /run -> words
@@ -85,7 +85,7 @@ def uncertainties(result):
     said, found = "at the last increment", []
     for contact in contacts_of(result):
         rows, known = [], result.uncertainties(contact.name)
-        for key, values in contact.totals().items():
+        for key, values in told_totals(contact).items():
             value = float(values[-1])
             if np.isnan(value) or (key == "shear_force" and not value):
                 continue
@@ -101,8 +101,16 @@ def uncertainties(result):
               for name, known in result.maxima.items()]
     bodies = list(filter(None, bodies))
     found += [folded(bodies, f"{len(bodies)} bodies {said}")] if len(bodies) > MOST_OPEN else bodies
-    heat = values_table(f"Heat of the model {said}", result.uncertainties("increment"))
-    return joined([*found, heat])
+    return joined([*found, heat_of_model(result, f"Heat of the model {said}")])
+
+
+def heat_of_model(result, caption):
+    """Return the table of the heat of the model: without uncertainties that of friction alone."""
+    known = result.uncertainties("increment")
+    why = no_estimate("needs ERRORS=FULL")
+    rows = [[each["label"], number(each["values"][-1]), why, each["unit"], *NO_PARTS]
+            for each in friction_heat(result) if each["values"][-1]]
+    return uncertainty_table(caption, known, rows) if rows and not known else values_table(caption, known)
 
 
 def capital(words):
