@@ -25,7 +25,7 @@ How accurate results are, what more accuracy costs, and how another program comp
 | How accurate is my run? | Its summary has an uncertainty (95 %) for each force, heat rate, peak pressure and edge, and the largest stress and temperature of each body | [Numerical uncertainty](#numerical-uncertainty) |
 | Which numbers have none? | Under the default, `ERRORS=LAST`, what errors build up in along the path; `ERRORS=FULL` gives them at four to six times the cost | [Numerical uncertainty](#numerical-uncertainty) |
 | How often do they hold? | For 96 to 100 % of the decks and each kind of number, largest stresses 13 of 14; against independent solutions for 95 to 100 % | [Uncertainties judged](#uncertainties-judged-on-decks-drawn-afterwards) |
-| Where bodies yield or creep? | With `ERRORS=FULL` for 97 % of all numbers, for 85 % of displacements | [Uncertainties of bodies that yield or creep](#uncertainties-of-bodies-that-yield-or-creep) |
+| Where bodies yield or creep? | With `ERRORS=FULL` for 98 % of all numbers | [Uncertainties of bodies that yield or creep](#uncertainties-of-bodies-that-yield-or-creep) |
 | How accurate are the largest stress and temperature? | Their uncertainties are in the summary, away from singular corners, which are named | [Largest stress and temperature](#largest-stress-and-temperature) |
 | How do I get 1 %? | `thercon run DECK --accuracy 1%`; most decks take one to three rounds, with friction at least two | [Accuracy on request](#accuracy-on-request) |
 | Node pairs or mortar points? | Keep the default, but use `PAIRING=SURFACES` on the faces of a crack whose force or heat counts | [Node pairs against mortar points](#node-pairs-against-mortar-points) |

@@ -27,8 +27,8 @@ long as well; 3/(2^p - 1) makes it the uncertainty of an error of order p, with 
 J. Roache, J. Fluids Eng. 116 (1994) 405-413; ASME V&V 20-2009). *Scatter* is how much the number
 varies about a smooth history, because errors change their sign as the edge of contact passes nodes.
 *Spacing* is that of the points about an edge, *iteration* what the fixed point has left. p is 0.8
-for forces, heat rates and peak pressures, 0.9 for the largest stress and temperature, 1.5 for
-edges; r is 0.08 for the edge of contact, 0.6 for that of stick, which is known between nodes only.
+for forces, heat rates and peak pressures, 0.9 for the largest stress and temperature, 0.5 for
+displacements, 1.5 for edges; r is 0.08 for the edge of contact and 0.6 for that of stick.
 
 `ERRORS=LAST`, the default, solves the last increment of each step once more, with elements divided
 at closed faces and where 95 % of the squared recovered errors are. It does not see what builds up
