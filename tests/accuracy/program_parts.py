@@ -15,10 +15,9 @@ COUPLING = {
 }
 PARTS = {
     "heat": {
-        "balances:balance_heat", "edge_heat:supplied_heat", "element_conduction",
+        "balances:balance_heat", "edge_heat:supplied_heat",
         "field_recovery:heat_flux_samples", "material_points:heat_flux",
-        "increment_checks:check_heat", "increment_solution:conduct",
-        "heat_equation", "heat_reduction", "jump_loads", "loads:card_heat",
+        "increment_solution:conduct", "heat_equation", "heat_reduction", "jump_loads", "loads:card_heat",
         "loads:film_matrix", "loads:heat_load", "unit_loads:location_heat", "point_properties:conductivity_in",
         "thermal_matrix",
     },
