@@ -344,7 +344,7 @@ contains
       end associate
    end subroutine form_kept_load
 
-   !> The loads of the jumps where pieces keep what they depend on.
+   !> The loads of the jumps, balanced, where pieces keep what they depend on.
    subroutine form_jump_load(self, bodies)
       class(heat_reduction_type), intent(inout) :: self
       type(reduced_bodies_type), intent(in) :: bodies
@@ -358,6 +358,7 @@ contains
                self%unit_responses(bodies%thermal, first, last))
          end do
       end associate
+      self%is_balanced = .true.
    end subroutine form_jump_load
 
    !> Condensed mechanical loads, balanced, of temperatures of the nodes that pieces keep, or of all
