@@ -76,13 +76,15 @@ contains
       on_axis(pack(mesh%element_body, mesh%element_plane == axisymmetric)) = .true.
    end function bodies_on_axis
 
-   !> How a body is named to the user, such as 'body 2 (of STEEL, first node 38)'.
+   !> How a body is named to the user, such as 'body 2 (HUB of STEEL, first node 38)': by the
+   !> element set that holds it alone, where there is one and its material has another name. Sets of
+   !> CAE that begin with _ name nothing.
    pure function body_name(model, body) result(name)
       type(model_type), intent(in) :: model
       integer, intent(in) :: body
       character(:), allocatable :: name
       character(:), allocatable :: materials
-      integer :: m
+      integer :: m, s
 
       associate (mesh => model%mesh)
          materials = ''
@@ -93,6 +95,14 @@ contains
             materials = materials//' and '//model%materials(m)%name
          end do
          name = 'body '//to_text(body)//' ('
+         do s = 1, size(mesh%element_sets)
+            associate (set => mesh%element_sets(s))
+               if (size(set%members) /= count(mesh%element_body == body)) cycle
+               if (any(mesh%element_body(set%members) /= body) .or. set%name(:1) == '_') cycle
+               if (set%name /= materials(6:)) name = name//set%name//' '
+               exit
+            end associate
+         end do
          if (len(materials) > 0) name = name//'of '//materials(6:)//', '
          name = name//'first node '//to_text(minval(mesh%node_number, mask= &
             mesh%node_body == body))//')'

@@ -1,13 +1,13 @@
 !> The print file `NAME.lst`: a summary, what is modelled and why, every increment, the verdicts,
 !> the zone diagrams, all warnings, and the deck.
 !>
-!> The summary is known at the end only: its lines are blank until then, and written over. A draft
-!> waits in memory until it is whole; then it takes the place of what the file holds.
+!> The summary is known at the end only: a line says so until then. A draft waits in memory until it
+!> is whole; then it takes the place of what the file holds.
 module listing
    use contact_points, only: contact_points_type, never_approached
    use due_output, only: table_is_due
-   use errors, only: error_type
-   use file_calls, only: check_in_place
+   use errors, only: error_type, set_error, status_internal
+   use file_calls, only: cannot_write, check_in_place, is_stream, read_file
    use listing_head, only: checks, ending, print_model, summary_block
    use listing_increments, only: print_attempts, print_balances, print_body_errors, &
       print_history_uncertainties, print_increment, print_interface, print_interfaces, &
@@ -40,7 +40,7 @@ module listing
       type(zone_diagram_type), allocatable :: diagrams(:)      !! one an interface
       character(:), allocatable :: failure                     !! why the run ended early
       type(summary_type), public :: summary                    !! what the run comes to
-      integer :: summary_start = 0                             !! bytes before it
+      integer :: summary_ends(2) = 0   !! bytes before and up to the end of what stands in its place
    contains
       procedure :: reserve
       procedure :: open => open_listing
@@ -70,7 +70,7 @@ contains
       self%descriptor = lock
    end subroutine reserve
 
-   !> Begins the reserved listing: heading, room for the summary, defaults, what is modelled.
+   !> Begins the reserved listing: heading, place of the summary, defaults, what is modelled.
    !> Error: status_internal, when the file cannot be written.
    subroutine open_listing(self, is_draft, model, interfaces, run, error)
       class(listing_type), intent(inout) :: self
@@ -79,7 +79,6 @@ contains
       type(contact_points_type), intent(in) :: interfaces(:) !! contact points of every interface
       type(run_summary_type), intent(in) :: run
       type(error_type), allocatable, intent(out) :: error !! what went wrong
-      type(string_type), allocatable :: running(:)
       character(19) :: date
       character(111) :: program
       integer :: now(8)
@@ -98,10 +97,9 @@ contains
       if (allocated(run%origin)) call self%page%wrapped('goes on   ', run%origin)
       call self%page%wrapped('heading   ', or_blank(model%heading))
       call self%page%title('SUMMARY')
-      self%summary_start = self%page%length
-      allocate (running(0))
-      call append(running, 'not finished: the run is still in progress, or was killed')
-      call self%page%append(summary_block(running, model))
+      self%summary_ends(1) = self%page%length
+      call self%page%line('   not finished: the run is still in progress, or was killed')
+      self%summary_ends(2) = self%page%length
       call self%page%list('DEFAULTS AND IGNORED CARDS', model%notes)
       call print_model(self%page, model, interfaces, run)
       call self%page%title('INCREMENTS')
@@ -245,7 +243,7 @@ contains
       type(run_summary_type), intent(in) :: run           !! the whole run
       type(error_type), allocatable, intent(out) :: error !! what went wrong
       type(string_type), allocatable :: lines(:), warnings(:)
-      character(:), allocatable :: block, labels, times, whole
+      character(:), allocatable :: labels, times
       type(run_entry_type), allocatable :: entries(:)
       integer :: i
 
@@ -304,17 +302,34 @@ contains
       if (size(warnings) > 0) call append(lines, counted(size(warnings), 'warning')// &
          ', see WARNINGS below')
       call self%summary%add_lines(model, interfaces, lines)
-      block = summary_block(lines, model)
-      if (self%is_draft) then
-         call self%page%take(whole)
-         whole(self%summary_start + 1:self%summary_start + len(block)) = block
-         call empty_file(self%descriptor, self%path, error)
-         if (.not. allocated(error)) call write_to_file(self%descriptor, self%path, whole, error)
-      else
-         call write_to_file(self%descriptor, self%path, block, error, self%summary_start)
-      end if
-      if (.not. allocated(error)) call check_in_place(self%path, self%descriptor, error)
+      call check_in_place(self%path, self%descriptor, error)
+      if (.not. allocated(error)) call place_summary(self, summary_block(lines), error)
    end subroutine finish
+
+   !> Puts the summary in its place in the text that is written, or waits; behind the text of what
+   !> is no file.
+   !> Error: status_internal, when the text cannot be read or written.
+   subroutine place_summary(self, block, error)
+      class(listing_type), intent(inout) :: self
+      character(*), intent(in) :: block
+      type(error_type), allocatable, intent(out) :: error
+      character(:), allocatable :: reason, text
+
+      if (is_stream(self%path)) then
+         call write_to_file(self%descriptor, self%path, block, error)
+         return
+      else if (self%is_draft) then
+         call self%page%take(text)
+         call empty_file(self%descriptor, self%path, error)
+      else
+         call read_file(self%path, huge(1), text, reason)
+         if (len(reason) > 0) call set_error(error, status_internal, &
+            cannot_write(self%path, reason))
+      end if
+      if (allocated(error)) return
+      call write_to_file(self%descriptor, self%path, text(:self%summary_ends(1))//block// &
+         text(self%summary_ends(2) + 1:), error, position=0)
+   end subroutine place_summary
 
    !> Frees the file; one in which nothing was written is removed. One that is not reserved stays.
    subroutine close_listing(self, keeps_lock)

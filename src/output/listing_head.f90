@@ -8,19 +8,15 @@ module listing_head
    use listing_text, only: page_type, page_width
    use model, only: model_type
    use model_words, only: alike_words, closed_law_words, first_alike, friction_heat_words, &
-      friction_words, from_to, has_many, &
-      open_law_words, open_words, overlap_words, pairing_words, points_words, wear_words
+      friction_words, from_to, open_law_words, open_words, overlap_words, pairing_words, &
+      points_words, wear_words
    use run_summaries, only: in_listing, run_entries, run_entry_type, run_summary_type
    use steps, only: solves_heat
-   use summary, only: summary_type
    use text, only: append, counted, or_blank, string_type, to_text
    use verification, only: verifier_type
    implicit none
    private
    public :: print_model, ending, checks, summary_block
-
-   integer, parameter :: run_lines = 3   !! ending, checks, warnings
-   integer, parameter :: more_lines = 2  !! of an interface, for lines that go on in the next one
 
 contains
 
@@ -56,35 +52,23 @@ contains
       end associate
    end function checks
 
-   !> The summary as it is in the file: always as many lines of the same length, so that it can be
-   !> written over.
-   pure function summary_block(lines, model) result(block)
+   !> The lines of the summary, those that are too long in several ones.
+   pure function summary_block(lines) result(block)
       type(string_type), intent(in) :: lines(:)
-      type(model_type), intent(in) :: model
       character(:), allocatable :: block
-      type(summary_type) :: summary
-      type(string_type), allocatable :: wrapped(:)
-      character(page_width) :: line
       character(:), allocatable :: rest
       integer :: i, k
 
-      allocate (wrapped(0))
+      block = ''
       do i = 1, size(lines)
          rest = '   '//lines(i)%value
          do while (len(rest) > page_width)
             k = index(rest(:page_width + 1), ' ', back=.true.)
             if (k <= 10) exit   ! no blank to go on behind
-            call append(wrapped, rest(:k - 1))
+            block = block//rest(:k - 1)//new_line('a')
             rest = repeat(' ', 9)//rest(k + 1:)
          end do
-         call append(wrapped, rest)
-      end do
-      block = ''
-      do i = 1, run_lines + summary%most_lines(model) + more_lines* &
-         max(merge(1, size(model%contacts), has_many(size(model%contacts))), 1)
-         line = ''
-         if (i <= size(wrapped)) line = wrapped(i)%value
-         block = block//line//new_line('a')
+         block = block//trim(rest)//new_line('a')
       end do
    end function summary_block
 

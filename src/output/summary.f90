@@ -4,7 +4,6 @@ module summary
    use, intrinsic :: ieee_arithmetic, only: ieee_is_nan, ieee_quiet_nan, ieee_value
    use contact_extents, only: is_end_of_face, rises_to_end
    use contact_points, only: contact_points_type
-   use contact_definitions, only: makes_friction_heat
    use contact_quantities, only: contact_table, contact_values, end_words, estimated, &
       has_quantity, zone_words
    use contact_system, only: contact_open, contact_stick
@@ -12,7 +11,6 @@ module summary
    use equations, only: section_nodes
    use field_quantities, only: maxima
    use kinds, only: dp
-   use materials, only: melts
    use mesh, only: mesh_type
    use mesh_bodies, only: body_name
    use model, only: model_type
@@ -22,6 +20,7 @@ module summary
    use quantity_types, only: find_quantity, needs_wear, of_interface, quantity_type
    use records, only: body_uncertainty_type, contact_record_type, increment_outcome_type, &
       increment_record_type, uncertainty_type
+   use steps, only: solves_heat
    use text, only: append, few_digits, or_blank, percent, string_type, to_text
    use unit_labels, only: unit_label
    implicit none
@@ -36,7 +35,7 @@ module summary
    integer, parameter :: field_width = 20   !! of the name of a field's range
    integer, parameter :: step_width = 400   !! longest line of a step
    integer, parameter :: step_column = 15   !! columns of each of its numbers
-   integer, parameter :: leading_in_line = 3   !! leading modes, at least
+   integer, parameter :: heat_column = 7 + 2*step_column   !! first column of the heat rates
    character(*), parameter :: step_quantities(3) = [character(13) :: 'normal_force', 'heat_rate', &
       'peak_pressure']
    character(*), parameter :: step_head = '  step           time   normal force      heat rate'// &
@@ -70,7 +69,6 @@ module summary
    contains
       procedure :: take
       procedure :: add_lines
-      procedure, nopass :: most_lines
    end type summary_type
 
 contains
@@ -168,36 +166,6 @@ contains
          closed < points))//' in part, '//to_text(count(closed == 0))//' open'
    end function closed_words
 
-   !> Most lines that there can be.
-   pure integer function most_lines(model)
-      type(model_type), intent(in) :: model
-      integer :: interfaces, told
-
-      interfaces = size(model%contacts)
-      told = merge(1, interfaces, has_many(interfaces))
-      associate (steps => size(model%steps), bodies => model%mesh%body_count)
-         most_lines = 3 + told*(1 + size(estimated))
-         if (interfaces == 0) most_lines = 1
-         if (interfaces == 0 .or. has_many(interfaces)) most_lines = most_lines + 1 + &
-            size(heat_names)
-         if (interfaces > 0 .and. steps > 1) most_lines = most_lines + &
-            merge(2, 1, has_many(interfaces)) + told*steps
-         if (any(model%steps%cycle%steps > 0)) most_lines = most_lines + 1
-         if (any(melts(model%materials))) most_lines = most_lines + 1
-         if (makes_friction_heat(model%interactions, model%contacts)) most_lines = most_lines + 1
-         if (any(model%interactions%wear%wears())) most_lines = most_lines + told*size(worn)
-         if (allocated(model%couplings)) most_lines = most_lines + 1 + &
-            count(model%couplings%is_section())
-         if (any(model%steps%stability_frequency > 0)) most_lines = most_lines + 3 + &
-            maxval(model%steps%stability_modes)/leading_in_line
-         most_lines = most_lines + count([any(model%materials%law%strains(1) > 0), &
-            any(model%materials%law%strains(2) > 0)])
-         ! Some of a body's lines are wrapped.
-         if (reason_of_run(model) == no_reason) most_lines = most_lines + &
-            merge(1, bodies, has_many(bodies))*2*(1 + size(maxima))
-      end associate
-   end function most_lines
-
    !> Adds when that increment was and where a branch turned, then each interface with a line for
    !> each quantity that it has; none before the first increment. Without an interface, and with
    !> many, the ranges of the fields are there.
@@ -212,9 +180,9 @@ contains
       if (self%last%increment == 0) return
       if (size(self%steps) > 0 .and. has_many(size(interfaces))) call append(lines, &
          'largest of all interfaces at the end of each step:')
-      if (size(self%steps) > 0) call append(lines, step_head)
+      if (size(self%steps) > 0) call append(lines, in_columns(step_head))
       do i = 1, size(self%steps)
-         call append(lines, self%steps(i)%value)
+         call append(lines, in_columns(self%steps(i)%value))
       end do
       call append(lines, 'at '//when(self, or_blank(model%load_label))//':')
       if (allocated(self%folds)) call append(lines, 'the branch turns at load factor'//trim(merge( &
@@ -252,6 +220,16 @@ contains
       if (words /= '') call append(lines, words)
       words = leading_words(self%last, or_blank(model%units%time))
       if (words /= '') call append(lines, words)
+   contains
+      !> A line of steps, without the column of heat rates where no step solves heat.
+      pure function in_columns(line) result(told)
+         character(*), intent(in) :: line
+         character(:), allocatable :: told
+
+         told = line
+         if (.not. any(solves_heat(model%steps%analysis))) told = &
+            line(:heat_column - 1)//line(heat_column + step_column:)
+      end function in_columns
    end subroutine add_lines
 
    !> The forces of all pre-tension sections.

@@ -323,8 +323,8 @@ def test_a_summary_tells_the_interface_then_the_results_then_what_failed(tmp_pat
         assert float(line[21:34]) == pytest.approx(value, rel=1e-5)
         assert line.split(",")[0].endswith(" " + unit)
         assert float(line.split("+-")[1].split()[0]) == pytest.approx(uncertainty, rel=0.05)
-    assert lines[9].startswith("  largest in body 1 (of ")
-    assert any(line.startswith("  largest in body 2 (of ") for line in lines)
+    assert lines[9].startswith("  largest in body 1 (CYLINDER of UPPER")
+    assert any(line.startswith("  largest in body 2 (BASE of LOWER") for line in lines)
     assert re.fullmatch(r" +von Mises stress +\S+ \+- \S+ +\(\S+ %\) +MPa, node \d+ \(\S+, \S+\)",
                         lines[10])
     at = next(k for k, line in enumerate(lines) if line.startswith("  results: "))
@@ -391,7 +391,7 @@ def test_a_run_without_contact_says_what_came_of_it(tmp_path):
     lines = [" ".join(line.split()) for line in process.stdout.splitlines()]
     told = ["at time 1 (increment 1):", "lowest temperature 100", "highest temperature 400",
             "heat in 7500 (no estimate: needs ERRORS=FULL)",
-            "heat out 7500 (no estimate: needs ERRORS=FULL)", "largest in body 1 (of STEEL, first node 1)",
+            "heat out 7500 (no estimate: needs ERRORS=FULL)", "largest in body 1 (BAR of STEEL, first node 1)",
             "temperature 400 +- 0 (0 %), node 1 (0, 0)"]
     assert lines[1:8] == told
     assert lines[8].endswith("bar.vtkhdf, .lst, .sta, .cvg")

@@ -72,7 +72,7 @@ def test_the_cylinder_on_a_base_without_support_is_named(tmp_path):
     deck.write_text(text.replace("BOTTOM, 2, 2, 0.\n", "").split("*VERIFY")[0])
     messages, force, pressure = outcome(deck, "normal_force", "pressure")
     assert messages.count(FLOATS) == 1
-    assert "body 2 (of LOWER, first node 1001) is free to move along y" in messages
+    assert "body 2 (BASE of LOWER, first node 1001) is free to move along y" in messages
     assert force == 0.0
     assert pressure.min() == 0.0
 

@@ -1,5 +1,7 @@
 """The undeformed mesh (Fig. 1 of the paper) with a close-up of the contact."""
 
+import re
+
 import numpy as np
 from matplotlib.collections import LineCollection, PolyCollection
 from matplotlib.lines import Line2D
@@ -12,7 +14,7 @@ from .style import plt
 
 SMALLER = 0.8  # of the model: a larger close-up would show nothing new
 LEGEND_WIDTH = 4.6  # inches
-MOST_MARKED = 80  # contact nodes are marked one by one up to here
+MOST_MARKED = 80  # contact points are marked one by one up to here
 # The slave's band and nodes are wider than the master's, which lie upon them where the faces touch.
 SLAVE = {"color": style.VERMILION, "lw": 3.4, "ls": "solid", "marker": "o", "ms": 6.0}
 MASTER = {"color": style.BLUE, "lw": 1.8, "ls": (0, (2.2, 1.4)), "marker": "s", "ms": 2.4}
@@ -37,7 +39,7 @@ def draw(result, options):
     for axes, window, nodes in panels:
         draw_elements(axes, cells, nodes)
         for contact in contacts:
-            draw_faces(axes, cells, result.faces(contact), contact, nodes)
+            draw_faces(axes, cells, result.faces(contact), contact, nodes and is_marked(contacts))
         frame(axes, window, result.units, cut=nodes and has_close_up)
         draw_rigid(axes, lines)
     if has_close_up:
@@ -45,7 +47,7 @@ def draw(result, options):
         style.panel_title(whole, "", "a")
         style.panel_title(close, "", "b")
     figure.legend(
-        handles=legend_handles(cells, contacts, lines),
+        handles=legend_handles(result, contacts, lines),
         **style.BELOW,
         ncols=4,
         columnspacing=1.4,
@@ -145,10 +147,15 @@ def draw_faces(axes, cells, faces, contact, close):
         axes.add_collection(
             LineCollection(lines, colors=colour, linewidths=width, linestyles=looks["ls"], zorder=3)
         )
-        if close and len(numbers) <= MOST_MARKED:
+        if close:
             at = cells.points[np.isin(cells.node_id, numbers)]
             marks = {"ls": "none", "mfc": "white", "mew": 0.8, "zorder": 4}
             axes.plot(*at.T, **(looks | marks))
+
+
+def is_marked(contacts):
+    """Return whether there are few enough contact points for marks."""
+    return sum(len(contact["slave_node"]) for contact in contacts) <= MOST_MARKED
 
 
 def mark_window(whole, close, window):
@@ -176,14 +183,15 @@ def body_names(cells):
     return sorted({int(b) for bodies in cells.bodies.values() for b in bodies})
 
 
-def legend_handles(cells, contacts, lines):
+def legend_handles(result, contacts, lines):
     """Return the legend's entries: bodies, drawings of rigid ones and, where there is contact, the two
     faces; of a drawing no master face is marked."""
+    cells = result.cells
     handles = [
         Patch(
             facecolor=style.body_tint(k),
             edgecolor="#555555",
-            label=f"body {name}",
+            label=re.sub(r", first node \d+| [(]first node.*", "", result.label_of_body(f"body {name}")),
         )
         for k, name in enumerate(body_names(cells))
     ]
@@ -192,8 +200,7 @@ def legend_handles(cells, contacts, lines):
         masters = np.concatenate([contact["master_node"] for contact in contacts])
         if lines and not np.isin(masters, cells.node_id[cells.used]).any():
             looks.pop()
-        is_marked = any(len(contact["slave_node"]) <= MOST_MARKED for contact in contacts)
-        plain = {} if is_marked else {"marker": None}
+        plain = {} if is_marked(contacts) else {"marker": None}
         handles += [
             Line2D([], [], mfc="white", label=f"contact face, {name}", **(look | plain))
             for name, look in looks

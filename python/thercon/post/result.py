@@ -454,8 +454,10 @@ class Result:
         return {name: self.uncertainties(name) for name in sorted(names, key=lambda n: int(n[5:]))}
 
     def label_of_body(self, name):
-        """Return what a body is called, such as body 2 (of STEEL, first node 38)."""
-        return text(uncertainty_of(self.file)[name].attrs.get("label", name))
+        """Return what a body is called, such as body 2 (HUB of STEEL, first node 38); where it has no
+        uncertainties, its name."""
+        groups = uncertainty_of(self.file) or {}
+        return text(groups[name].attrs.get("label", name)) if name in groups else name
 
     @cached_property
     def deck(self):
