@@ -12,12 +12,11 @@
 module accuracy_rounds
    use, intrinsic :: ieee_arithmetic, only: ieee_is_nan
    use accuracy_targets, only: accuracy_request_type
-   use contact_definitions, only: brings_friction
    use contact_extents, only: contact_width, is_end_of_face, peak_is_at_end, spacing_at
    use contact_points, only: contact_points_type
    use contact_quantities, only: contact_values, end_words, estimated
    use kinds, only: dp
-   use model, only: model_type
+   use model, only: has_friction, model_type
    use no_estimates, only: at_corner, grows, no_reason, of_axis, of_path, of_sliding, &
       reason_of_run, remains, slides_far
    use quantity_types, only: find_quantity, quantity_type
@@ -106,16 +105,10 @@ contains
    !> increments may be the larger part.
    pure logical function needs_full(model)
       type(model_type), intent(in) :: model              !! with targets
-      logical :: has_friction
-      integer :: i, s
+      integer :: i
 
       needs_full = any(reason_of_run(model) == [of_sliding, of_path])
-      has_friction = any(model%interactions(model%contacts%interaction)%friction%coefficient > &
-         0.0_dp)
-      do s = 1, size(model%steps)
-         has_friction = has_friction .or. brings_friction(model%steps(s)%changes)
-      end do
-      if (needs_full .or. .not. has_friction) return
+      if (needs_full .or. .not. has_friction(model)) return
       needs_full = any([(is_of_friction(model%accuracy%targets(i)%quantity), &
          i=1, size(model%accuracy%targets))])
    end function needs_full

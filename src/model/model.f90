@@ -4,7 +4,8 @@ module model
    use accuracy_targets, only: accuracy_request_type
    use amplitudes, only: amplitude_type
    use errors, only: place_type
-   use contact_definitions, only: contact_definition_type, interaction_type, tie_definition_type
+   use contact_definitions, only: brings_friction, contact_definition_type, interaction_type, &
+      tie_definition_type
    use controls, only: solver_skyline, tail_by_size, tail_sparse
    use equations, only: coupling_type, equation_type
    use kinds, only: dp
@@ -17,7 +18,7 @@ module model
    implicit none
    private
    public :: model_type, bar_type, refined_region_type, verify_type, unit_labels_type, &
-      follows_temperatures, has_sparse_tail, needs_full_tail, uncertainty_named
+      follows_temperatures, has_friction, has_sparse_tail, needs_full_tail, uncertainty_named
 
    ! ERRORS= of *OPTIONS: no uncertainties; those of the last increment of each step; of all.
    integer, parameter, public :: uncertainty_no = 0, uncertainty_last = 1, uncertainty_full = 2
@@ -151,6 +152,17 @@ contains
       uncertainty = findloc(['NO  ', 'LAST', 'FULL', 'YES '], to_upper(word), dim=1) - 1
       if (uncertainty > uncertainty_full) uncertainty = uncertainty_last
    end function uncertainty_named
+
+   !> Whether contact points may stick or slip, in some step at least.
+   pure logical function has_friction(model)
+      type(model_type), intent(in) :: model
+      integer :: s
+
+      has_friction = any(model%interactions(model%contacts%interaction)%friction%coefficient > &
+         0.0_dp)
+      if (size(model%contacts) > 0) has_friction = has_friction .or. &
+         any([(brings_friction(model%steps(s)%changes), s=1, size(model%steps))])
+   end function has_friction
 
    !> Whether properties of any body follow its temperatures.
    pure logical function follows_temperatures(model)

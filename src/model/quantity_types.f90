@@ -8,9 +8,9 @@ module quantity_types
    public :: quantity_type, find_quantity, of_history, of_bodies, of_passes, of_interface, &
       of_contact_points, of_nodes, of_points, of_elements, of_sections, of_references, of_motions, &
       needs_nothing, needs_temperature, needs_heat, needs_mechanics, needs_coupling, &
-      needs_storage, needs_dilatation, needs_friction_heat, needs_wear, needs_stability, &
-      needs_branch, needs_sections, needs_plasticity, needs_creep, needs_laws, needs_references, &
-      needs_melting, last_need
+      needs_storage, needs_dilatation, needs_friction, needs_friction_heat, needs_wear, &
+      needs_stability, needs_branch, needs_sections, needs_plasticity, needs_creep, needs_laws, &
+      needs_references, needs_melting, last_need
 
    integer, parameter :: name_length = 25
 
@@ -46,7 +46,8 @@ module quantity_types
    integer, parameter :: needs_references = 14   !! mechanics and generalized plane strain
    integer, parameter :: needs_wear = 15         !! mechanics and *WEAR
    integer, parameter :: needs_melting = 16      !! heat and *LATENT HEAT
-   integer, parameter :: last_need = needs_melting
+   integer, parameter :: needs_friction = 17     !! one of both, or mechanics and friction
+   integer, parameter :: last_need = needs_friction
 
    type :: quantity_type
       character(name_length) :: name           !! of its dataset, in *VERIFY and in tables of errors

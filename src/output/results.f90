@@ -24,11 +24,11 @@ module results
    use hdf5_writer, only: as_integer, end_hdf5, hdf5_writer_type, start_hdf5
    use kinds, only: dp, long
    use mesh_bodies, only: body_name
-   use model, only: model_type, uncertainty_full
+   use model, only: has_friction, model_type, uncertainty_full
    use no_estimates, only: no_reason, reason_count, reason_inside_step, reason_of_run, &
       words_of_reason
-   use quantity_types, only: needs_coupling, needs_dilatation, needs_friction_heat, needs_wear, &
-      needs_branch, needs_heat, needs_mechanics, needs_nothing, needs_sections, needs_stability, &
+   use quantity_types, only: needs_coupling, needs_dilatation, needs_friction, &
+      needs_friction_heat, needs_wear, needs_branch, needs_heat, needs_mechanics, needs_nothing, needs_sections, needs_stability, &
       needs_storage, needs_temperature, of_bodies, of_contact_points, of_history, of_interface, &
       of_motions, of_passes, of_references, of_sections, quantity_type, last_need, needs_creep, &
       needs_plasticity, needs_laws, needs_references, needs_melting
@@ -378,6 +378,7 @@ contains
          has(needs_plasticity) = has(needs_mechanics) .and. any(model%materials%law%strains(1) > 0)
          has(needs_creep) = has(needs_mechanics) .and. any(model%materials%law%strains(2) > 0)
          has(needs_laws) = has(needs_plasticity) .or. has(needs_creep)
+         has(needs_friction) = has(needs_laws) .or. (has(needs_mechanics) .and. has_friction(model))
          has(needs_melting) = has(needs_heat) .and. any(melts(model%materials))
          has(needs_friction_heat) = has(needs_heat) .and. makes_friction_heat( &
             model%interactions, model%contacts)

@@ -4,7 +4,7 @@ module increment_quantities
    use kinds, only: dp
    use no_estimates, only: mark_of, no_finer_value
    use quantity_types, only: needs_branch, needs_coupling, needs_creep, needs_dilatation, &
-      needs_friction_heat, needs_heat, needs_laws, needs_mechanics, needs_melting, &
+      needs_friction, needs_friction_heat, needs_heat, needs_laws, needs_mechanics, needs_melting, &
       needs_plasticity, needs_references, needs_sections, needs_stability, needs_storage, &
       of_bodies, of_elements, of_history, of_motions, of_passes, of_references, of_sections, &
       quantity_type
@@ -64,7 +64,7 @@ module increment_quantities
       description='energy that plasticity dissipated so far'), &
       quantity_type('ALLCD', of_history, 'stress length^3', needs_laws, &
       description='energy that creep dissipated so far'), &
-      quantity_type('ALLFD', of_history, 'stress length^3', needs_laws, &
+      quantity_type('ALLFD', of_history, 'stress length^3', needs_friction, &
       description='energy that friction dissipated so far'), &
       quantity_type('ALLWK', of_history, 'stress length^3', needs_laws, &
       description='work of loads, supports, temperatures and interferences so far'), &

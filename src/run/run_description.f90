@@ -4,7 +4,7 @@ module run_description
    use, intrinsic :: iso_fortran_env, only: output_unit
    use command_line, only: command_type
    use conductance_laws, only: is_constant
-   use contact_definitions, only: brings_friction, makes_friction_heat
+   use contact_definitions, only: makes_friction_heat
    use contact_points, only: contact_points_type
    use controls, only: solver_mumps
    use deck_outcomes, only: print_document
@@ -14,7 +14,7 @@ module run_description
    use json, only: json_type
    use kinds, only: dp
    use messages, only: print_line
-   use model, only: model_type
+   use model, only: has_friction, model_type
    use model_words, only: alike_words, closed_law_words, first_alike, friction_heat_words, &
       friction_words, from_to, &
       open_law_words, open_words, overlap_words, pairing_words, points_words, wear_words
@@ -55,22 +55,12 @@ contains
       type(model_type), intent(in) :: model
       type(run_summary_type), intent(inout) :: run
       character(:), allocatable :: why_off, why_on
-      logical :: has_heat, has_mechanics, has_contact, has_friction, has_law
-      integer :: i
+      logical :: has_heat, has_mechanics, has_contact, has_law
 
       has_heat = any(solves_heat(model%steps%analysis))
       has_mechanics = any(solves_mechanics(model%steps%analysis))
       has_contact = size(model%contacts) > 0
-      has_friction = .false.
-      has_law = .false.
-      do i = 1, size(model%contacts)
-         associate (interaction => model%interactions(model%contacts(i)%interaction))
-            has_friction = has_friction .or. interaction%friction%coefficient > 0.0_dp
-            has_law = has_law .or. .not. is_constant(interaction%law)
-         end associate
-      end do
-      if (has_contact) has_friction = has_friction .or. &
-         any([(brings_friction(model%steps(i)%changes), i=1, size(model%steps))])
+      has_law = .not. all(is_constant(model%interactions(model%contacts%interaction)%law))
       run%modelled = ''
       run%reasons = ''
       call name('elasticity', has_mechanics, steps_that(solves_mechanics(model%steps%analysis)), &
@@ -85,7 +75,7 @@ contains
       why_off = 'no *FRICTION above 0'
       if (.not. has_contact) why_off = 'no contact'
       if (has_contact .and. .not. has_mechanics) why_off = 'no step solves mechanics'
-      call name('friction', has_friction .and. (has_mechanics .or. .not. has_contact), &
+      call name('friction', has_friction(model) .and. (has_mechanics .or. .not. has_contact), &
          '*FRICTION', why_off)
       why_on = 'a conductance of gap, pressure or temperature'
       why_off = 'no '//why_on(3:)

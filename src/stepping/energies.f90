@@ -1,7 +1,8 @@
-!> Energies of bodies that remember, and the work of loads and friction on the way to them. The work
+!> Work of friction, and of bodies that remember all energies and the work of loads. The work
 !> of a load, an interference or a temperature in an increment is that of the mean of its force or
 !> stress; what materials dissipate is in their histories.
 module energies
+   use, intrinsic :: ieee_arithmetic, only: ieee_quiet_nan, ieee_value
    use connections, only: connections_type
    use friction_heating, only: slips
    use kinds, only: dp
@@ -30,8 +31,8 @@ contains
          slips(run%bodies, next%contact)))
    end subroutine add_friction_work
 
-   !> Adds the work of loads, interferences and temperatures in an increment that is to be accepted,
-   !> and records all energies at its end, where the next one begins.
+   !> Records the work of friction up to the end of an increment that is to be accepted. Where
+   !> bodies remember it adds that of loads, interferences and temperatures, and records all energies.
    subroutine measure_energies(run, model, next, record)
       type(simulation_type), intent(inout) :: run            !! at the start of the increment
       type(model_type), intent(in) :: model
@@ -40,6 +41,11 @@ contains
       type(point_fields_type) :: after
       real(dp) :: forces(2, size(next%temperature)), temperature(size(next%temperature))
 
+      if (.not. run%corrections%has_laws) then
+         record%energies = spread(ieee_value(1.0_dp, ieee_quiet_nan), 1, 5)
+         record%energies(4) = next%work(1)
+         return
+      end if
       forces = record%fields%external_force
       if (allocated(run%state%reaction)) forces = forces + run%state%reaction + on_nodes( &
          run%bodies%points%partners, reshape(run%state%force_load, shape(forces)))

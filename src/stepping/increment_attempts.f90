@@ -20,7 +20,7 @@ module increment_attempts
       solve_points
    use kinds, only: dp
    use load_histories, only: step_clock_type
-   use model, only: model_type
+   use model, only: has_friction, model_type
    use records, only: add_attempts, increment_record_type
    use simulation, only: simulation_type
    use sliding_attempts, only: check_arrivals, check_slip, compare_with_drive
@@ -170,8 +170,8 @@ contains
          next%force_load = run%loads%nodal_forces()
          call solve_on_faces(run, model, attempt, error)
          if (allocated(error)) return
-         if (run%corrections%has_laws .and. solves_mechanics(step%analysis)) call &
-            add_friction_work(run, next)
+         if ((run%corrections%has_laws .or. has_friction(model)) .and. &
+            solves_mechanics(step%analysis)) call add_friction_work(run, next)
          if (solves_mechanics(step%analysis)) call warn_of_choices(run, model, &
             attempt%workspace%contact, next, attempt%undecided, record)
          ! Heat that strains take up, T0 beta:eps' over all bodies. Loads that act at once strain

@@ -60,7 +60,7 @@ def facts(result, listing):
     if result.accuracy:
         cpu = result.accuracy["cpu_seconds"]
         spent += f" in round {len(cpu)}; all rounds took {sum(cpu):.2f} CPU seconds"
-    rows += [("time of the run", spent)]
+    rows += [("time without uncertainties", spent)]
     listed = joined(html("<div><dt>{}</dt><dd>{}</dd></div>", *row) for row in rows)
     return html('<dl class="facts">{}</dl>', listed)
 
