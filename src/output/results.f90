@@ -27,11 +27,11 @@ module results
    use model, only: has_friction, model_type, uncertainty_full
    use no_estimates, only: no_reason, reason_count, reason_inside_step, reason_of_run, &
       words_of_reason
-   use quantity_types, only: needs_coupling, needs_dilatation, needs_friction, &
-      needs_friction_heat, needs_wear, needs_branch, needs_heat, needs_mechanics, needs_nothing, needs_sections, needs_stability, &
-      needs_storage, needs_temperature, of_bodies, of_contact_points, of_history, of_interface, &
-      of_motions, of_passes, of_references, of_sections, quantity_type, last_need, needs_creep, &
-      needs_plasticity, needs_laws, needs_references, needs_melting
+   use quantity_types, only: needs_branch, needs_coupling, needs_creep, needs_dilatation, &
+      needs_friction, needs_friction_heat, needs_heat, needs_laws, needs_mechanics, needs_melting, &
+      needs_nothing, needs_plasticity, needs_references, needs_sections, needs_stability, &
+      needs_storage, needs_temperature, needs_wear, last_need, of_bodies, of_contact_points, &
+      of_history, of_interface, of_motions, of_passes, of_references, of_sections, quantity_type
    use records, only: increment_record_type
    use reported_quantities, only: datasets, geometry
    use accuracy_lines, only: write_accuracy

@@ -32,7 +32,8 @@ contains
    end subroutine add_friction_work
 
    !> Records the work of friction up to the end of an increment that is to be accepted. Where
-   !> bodies remember it adds that of loads, interferences and temperatures, and records all energies.
+   !> bodies remember it adds that of loads, interferences and temperatures, and records all
+   !> energies.
    subroutine measure_energies(run, model, next, record)
       type(simulation_type), intent(inout) :: run            !! at the start of the increment
       type(model_type), intent(in) :: model
@@ -41,6 +42,7 @@ contains
       type(point_fields_type) :: after
       real(dp) :: forces(2, size(next%temperature)), temperature(size(next%temperature))
 
+      if (.not. allocated(next%work)) return
       if (.not. run%corrections%has_laws) then
          record%energies = spread(ieee_value(1.0_dp, ieee_quiet_nan), 1, 5)
          record%energies(4) = next%work(1)

@@ -78,8 +78,8 @@ contains
          if (allocated(error)) return
       end do
       call warn_of_pivot(run, record)
-      if (allocated(attempt%next%work) .and. solves_mechanics(model%steps(record%step)%analysis)) &
-         call measure_energies(run, model, attempt%next, record)
+      if (solves_mechanics(model%steps(record%step)%analysis)) call measure_energies(run, model, &
+         attempt%next, record)
       call accept_increment(attempt%next, model, run%state, record)
       call move_alloc(attempt%known, run%known)
       call move_alloc(attempt%undecided, run%undecided)
