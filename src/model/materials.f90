@@ -90,6 +90,7 @@ module materials
    !> One *SOLID SECTION.
    type :: section_type
       integer :: material = 0           !! index into model%materials
+      integer :: element_set = 0        !! index into the mesh's element sets, 0 after an error
       integer :: orientation = 0        !! index into model%orientations, 0 for x and y
       real(dp) :: thickness = 1.0_dp    !! thickness [length]
       !> Of generalized plane strain: index of the node whose degrees of freedom are the change of

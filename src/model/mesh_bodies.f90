@@ -77,8 +77,8 @@ contains
    end function bodies_on_axis
 
    !> How a body is named to the user, such as 'body 2 (HUB of STEEL, first node 38)': by the
-   !> element set that holds it alone, where there is one and its material has another name. Sets of
-   !> CAE that begin with _ name nothing.
+   !> element set of its section, where that holds it alone and its material has another name. Sets
+   !> of CAE that begin with _ name nothing.
    pure function body_name(model, body) result(name)
       type(model_type), intent(in) :: model
       integer, intent(in) :: body
@@ -95,12 +95,12 @@ contains
             materials = materials//' and '//model%materials(m)%name
          end do
          name = 'body '//to_text(body)//' ('
-         do s = 1, size(mesh%element_sets)
-            associate (set => mesh%element_sets(s))
+         do s = 1, size(model%sections)
+            if (model%sections(s)%element_set == 0) cycle
+            associate (set => mesh%element_sets(model%sections(s)%element_set))
                if (size(set%members) /= count(mesh%element_body == body)) cycle
                if (any(mesh%element_body(set%members) /= body) .or. set%name(:1) == '_') cycle
                if (set%name /= materials(6:)) name = name//set%name//' '
-               exit
             end associate
          end do
          if (len(materials) > 0) name = name//'of '//materials(6:)//', '

@@ -14,6 +14,7 @@ from .style import plt
 
 SMALLER = 0.8  # of the model: a larger close-up would show nothing new
 LEGEND_WIDTH = 4.6  # inches
+LEGEND_CHARACTERS = 100  # in a line of the legend, with the signs before them
 MOST_MARKED = 80  # contact points are marked one by one up to here
 # The slave's band and nodes are wider than the master's, which lie upon them where the faces touch.
 SLAVE = {"color": style.VERMILION, "lw": 3.4, "ls": "solid", "marker": "o", "ms": 6.0}
@@ -46,10 +47,12 @@ def draw(result, options):
         mark_window(whole, close, near)
         style.panel_title(whole, "", "a")
         style.panel_title(close, "", "b")
+    handles = legend_handles(result, contacts, lines)
+    longest = max(len(handle.get_label()) for handle in handles)
     figure.legend(
-        handles=legend_handles(result, contacts, lines),
+        handles=handles,
         **style.BELOW,
-        ncols=4,
+        ncols=int(np.clip(LEGEND_CHARACTERS // (longest + 6), 1, 4)),
         columnspacing=1.4,
     )
     name = style.file_name(result, "mesh")

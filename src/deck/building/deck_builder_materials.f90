@@ -276,7 +276,7 @@ contains
       type(deck_type), intent(inout) :: deck
       integer, allocatable :: places(:)
       real(dp) :: thickness(1)
-      integer :: n, node, other, set, unnamed
+      integer :: n, node, other, unnamed
       logical :: valid
 
       places = cards_of(deck%cards, 'SOLID SECTION')
@@ -300,7 +300,7 @@ contains
                   end if
                end associate
             end if
-            call give_section(n, deck, set)
+            call give_section(n, deck, section%element_set)
             if (deck%card%has('REF NODE')) then
                ! Sections may have one in common; the other node the builder of nodes left for it.
                unnamed = unnamed + 1
@@ -313,10 +313,10 @@ contains
                if (node > 0 .and. other > 0) section%reference = &
                   deck%model%sections(other)%reference
             end if
-            call check_reference(set, deck)
-            if (size(deck%card%data) > 0 .or. set == 0) cycle
-            if (any(deck%mesh%element_plane(deck%mesh%element_sets(set)%members) /= &
-               axisymmetric)) call deck%note('*SOLID SECTION without a thickness: '// &
+            call check_reference(section%element_set, deck)
+            if (size(deck%card%data) > 0 .or. section%element_set == 0) cycle
+            if (any(deck%mesh%element_plane(deck%mesh%element_sets(section%element_set)%members) &
+               /= axisymmetric)) call deck%note('*SOLID SECTION without a thickness: '// &
                to_text(section%thickness))
          end associate
       end do
