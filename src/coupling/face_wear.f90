@@ -89,9 +89,12 @@ contains
       type(solution_state_type), intent(inout) :: next      !! at the end
 
       next%wear = before%wear
+      next%worn_volume = before%worn_volume
       associate (weight => bodies%points%weight, contact => next%contact)
          where (weight > 0.0_dp .and. contact%contact_state /= contact_open)
             next%wear = next%wear + by_pressure*contact%force/weight
+            ! Areas of faces that slide follow their strains.
+            next%worn_volume = next%worn_volume + by_pressure*contact%force
          end where
          where (bodies%laws%worn_part*by_pressure > 0.0_dp .and. contact%contact_state /= &
             contact_open) contact%gap = 0.0_dp

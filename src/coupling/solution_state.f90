@@ -26,6 +26,7 @@ module solution_state
       !> (2 nodes) at which contact points of faces that slide were placed, or none [length]
       real(dp), allocatable :: faces_at(:)
       real(dp), allocatable :: wear(:)              !! (m) depth of both faces, or none [length]
+      real(dp), allocatable :: worn_volume(:)       !! (m) that both have lost [length^3]
       real(dp), allocatable :: smallest_gap(:)      !! (m) smallest gap so far [length]
       !> (2, nodes) of the last increment that solved mechanics; unallocated before it [force]
       real(dp), allocatable :: reaction(:, :)
@@ -105,6 +106,7 @@ contains
       call reals(self, 'displacement', state%displacement)
       call reals(self, 'faces_at', state%faces_at)
       call reals(self, 'wear', state%wear)
+      call reals(self, 'worn_volume', state%worn_volume)
       call reals(self, 'stress_temperature', state%stress_temperature)
       call reals(self, 'smallest_gap', state%smallest_gap)
       if (allocated(state%reaction)) reaction = [state%reaction]

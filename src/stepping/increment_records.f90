@@ -228,9 +228,9 @@ contains
          associate (share => bodies%laws%wear_share(first:last))
             record%wear_slave = share*next%wear(first:last)
             record%wear_master = (1.0_dp - share)*next%wear(first:last)
+            record%worn_volume = [sum(share*next%worn_volume(first:last)), &
+               sum((1.0_dp - share)*next%worn_volume(first:last))]
          end associate
-         record%worn_volume = [sum(points%weight*record%wear_slave), &
-            sum(points%weight*record%wear_master)]
       end if
       if (allocated(points%is_beyond)) record%is_beyond = points%is_beyond
       if (.not. points%follows_sliding) record%slide = worst_slide(points, closed, record%movement)

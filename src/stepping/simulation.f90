@@ -288,6 +288,7 @@ contains
             model%mesh, model%sections)
          if (allocated(bodies%faces_at)) state%faces_at = bodies%faces_at
          if (allocated(bodies%worn)) state%wear = bodies%worn
+         if (allocated(bodies%worn)) state%worn_volume = bodies%worn
          numbers = history_count(model%mesh, model%sections, model%materials)
          if (numbers > 0) allocate (state%history(numbers), source=0.0_dp)
       end associate
