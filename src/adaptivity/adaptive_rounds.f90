@@ -68,6 +68,7 @@ module adaptive_rounds
 
    !> Part of the squared error that is marked, in the first round but half of what a target allows
    real(dp), parameter :: most_marked = 0.8_dp
+   real(dp), parameter :: alike = 0.99_dp       !! part of a squared error that counts as the same
    real(dp), parameter :: part = 0.4_dp         !! of a target that the resolution of edges may take
    real(dp), parameter :: reach = 0.5_dp        !! of the contact length: where influence falls
 
@@ -222,35 +223,43 @@ contains
             if (length > 0.0_dp) of_edges = min(most_levels, ceiling(log(length/ &
                (part*finding%allowed))/log(2.0_dp)))
             call mark_edges(self, interfaces(i), edges, max(levels, of_edges))
-            weight = influence(q, model%mesh, interfaces(i), record%contacts(i))
+            weight = influence(q, model%mesh, interfaces(i), record%contacts(i), finding%allowed)
             marked = most_marked
             if (size(rounds%rounds) == 1) marked = min(most_marked, 1.0_dp - 0.5_dp* &
                finding%allowed/max(uncertainty, finding%allowed))
-            where (largest_part(weight*(squared_errors(model%mesh, record%stress_error) + &
-               squared_errors(model%mesh, record%heat_flux_error)), marked)) of_elements = &
-               max(of_elements, levels)
+            weight = weight*(squared_errors(model%mesh, record%stress_error) + &
+               squared_errors(model%mesh, record%heat_flux_error))
+            ! Elements that err alike are divided alike.
+            where (weight >= alike*minval(weight, mask=largest_part(weight, marked))) &
+               of_elements = max(of_elements, levels)
          end associate
       end do
    end subroutine take
 
-   !> How much the squared error of each element counts for a quantity.
-   pure function influence(q, mesh, points, contact) result(weight)
+   !> How much the squared error of each element counts for a quantity. The peak of a pressure may
+   !> be wherever it is as high but for what is allowed; one that is uniform follows all of the
+   !> bodies.
+   pure function influence(q, mesh, points, contact, allowed) result(weight)
       integer, intent(in) :: q
       type(mesh_type), intent(in) :: mesh
       type(contact_points_type), intent(in) :: points
       type(contact_record_type), intent(in) :: contact
+      real(dp), intent(in) :: allowed
       real(dp) :: weight(size(mesh%element_kind)), length, middle(2)
-      integer :: e, n, peak
+      integer, allocatable :: peaks(:)
+      integer :: e, k, n
 
       weight = 1.0_dp
       if (estimated(q)%name /= 'peak_pressure') return
-      peak = maxloc(contact%pressure, dim=1)
+      peaks = pack([(k, k=1, size(contact%pressure))], contact%pressure >= &
+         maxval(contact%pressure) - allowed)
       length = reach*closed_length(points, contact)
-      if (length <= 0.0_dp) return
+      if (length <= 0.0_dp .or. size(peaks) == count(contact%pressure > 0.0_dp)) return
       do e = 1, size(weight)
          n = element_corner_count(mesh%element_kind(e))
          middle = sum(mesh%coordinates(:, mesh%element_nodes(:n, e)), dim=2)/n
-         weight(e) = (1.0_dp + norm2(middle - points%position(:, peak))/length)**(-8)
+         weight(e) = (1.0_dp + minval(norm2(points%position(:, peaks) - spread(middle, 2, &
+            size(peaks)), dim=1))/length)**(-8)
       end do
    end function influence
 

@@ -102,7 +102,7 @@ contains
    !> Varies all but the mesh.
    !> *VERIFY cards that increments land on still make them land; where the increments vary, the
    !> others are left out, for a fixed increment of another size need not end there. Rounds of a
-   !> requested accuracy leave all out: the first one has judged them.
+   !> requested accuracy leave out what is expected: the first one has judged it.
    pure subroutine apply_variation(variation, model)
       type(variation_type), intent(in) :: variation   !! what is other
       type(model_type), intent(inout) :: model        !! as the deck builder made it
@@ -126,12 +126,11 @@ contains
             step%max_increments = ceiling(step%max_increments/min(variation%increments, 1.0_dp))
          end associate
       end do
+      allocate (lands(size(model%verifications)), source=.true.)
       if (allocated(variation%divisions)) then
-         deallocate (model%verifications)
-         allocate (model%verifications(0))
+         lands = .not. model%verifications%expects
       else if (any(model%steps%direct) .and. abs(variation%increments - 1.0_dp) > 0.0_dp) then
          ends = [(sum(model%steps(:s)%period), s=1, size(model%steps))]
-         allocate (lands(size(model%verifications)))
          do i = 1, size(lands)
             associate (check => model%verifications(i))
                lands(i) = .not. check%at_last
@@ -139,8 +138,8 @@ contains
                   size(ends)))%direct
             end associate
          end do
-         model%verifications = model%verifications(pack([(i, i=1, size(lands))], lands))
       end if
+      model%verifications = model%verifications(pack([(i, i=1, size(lands))], lands))
    end subroutine apply_variation
 
    !> Divides the elements of a mesh: all of them, then those of each region of the deck and at the

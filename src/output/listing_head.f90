@@ -42,14 +42,14 @@ contains
       type(run_summary_type), intent(in) :: run
       character(:), allocatable :: line
 
-      line = 'no *VERIFY checks'
-      if (size(verifier%outcomes) > 0 .or. run%verify_passed + run%verify_failed > 0) then
-         line = counts_of_checks(run%verify_passed, run%verify_failed)
-         if (size(verifier%outcomes) == 0) line = line//' in round 1'
-      end if
+      line = ''
+      if (run%verify_passed + run%verify_failed > 0) line = ', '//counts_of_checks( &
+         run%verify_passed, run%verify_failed)
       associate (waiting => count(.not. verifier%outcomes%judged))
          if (waiting > 0) line = line//', '//to_text(waiting)//' not judged'
       end associate
+      if (line == '') line = ', no *VERIFY checks'
+      line = line(3:)
    end function checks
 
    !> The lines of the summary, those that are too long in several ones.

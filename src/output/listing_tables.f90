@@ -89,8 +89,9 @@ contains
          call print_verdict(page, checks(i), outcomes(i))
       end do
       call page%line('')
-      call page%line('   '//to_text(count(outcomes%passed))//' passed, '// &
-         to_text(count(.not. outcomes%passed))//' failed')
+      call page%line('   '//to_text(count(outcomes%passed .and. checks%expects))//' passed, '// &
+         to_text(count(outcomes%judged .and. .not. outcomes%passed))//' failed, '// &
+         to_text(count(.not. outcomes%judged))//' not judged')
    end subroutine print_verdicts
 
    subroutine print_verdict(page, check, outcome)
@@ -100,7 +101,7 @@ contains
       character(10) :: kind
       character(max(24, len(check%title()))) :: quantity
       character(16) :: where
-      character(:), allocatable :: allowed, deviation, expected, found, time
+      character(:), allocatable :: allowed, deviation, expected, found, time, verdict
 
       kind = or_blank(check%kind)
       quantity = check%title()
@@ -117,9 +118,11 @@ contains
          if (outcome%reason == '') deviation = column(outcome%deviation, 10, 2)
          allowed = column(check%tolerance, 10, 2)
       end if
+      verdict = '-'
+      if (check%expects .and. outcome%judged) verdict = merge('PASS', 'FAIL', outcome%passed)
       call page%line(to_right(to_text(check%line), 6)//'  '//kind//' '//quantity//' '//where// &
          to_right(time, 11)//expected//found//deviation//allowed// &
-         merge(' REL', ' ABS', check%relative)//merge(' PASS', ' FAIL', outcome%passed))
+         merge(' REL', ' ABS', check%relative)//to_right(verdict, 5))
       if (or_blank(check%source) /= '') call page%line('        source: '//check%source)
       if (outcome%reason /= '') call page%line('        '//trim(merge('failed:  ', 'no value:', &
          check%expects))//' '//outcome%reason)

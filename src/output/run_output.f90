@@ -177,7 +177,7 @@ contains
       integer :: counts(3)
 
       since = wall_seconds()
-      if (size(self%verifier%outcomes) > 0) then
+      if (any(model%verifications%expects)) then
          counts = self%verifier%counts(model)
          self%run%verify_passed = counts(1)
          self%run%verify_failed = counts(2)

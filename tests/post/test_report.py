@@ -761,7 +761,7 @@ def test_every_increment_shows_its_own_uncertainties(uncertain, browser):
     assert times == (every if is_full else every[-1:])
     assert main([str(path), "--out", str(path.parent)]) == 0
     browser.open(path.with_suffix(".html"))
-    assert browser.run("return document.body.textContent.includes('Body 2 (of LOWER, first node 1001) at')")
+    assert browser.run("return document.body.textContent.includes('Body 2 (BASE of LOWER, first node 1001) at')")
     for key, time in (("end", every[-1]), ("left", every[-2]), ("home", every[0])):
         browser.press("#load", key)
         totals, *charts = browser.run("""const of = id => document.getElementById(id);

@@ -6,7 +6,7 @@ from itertools import takewhile
 
 # card, kind, quantity, where, time, expected, found, deviation, allowed, kind of it, verdict
 CHECK = re.compile(
-    r"^ *(\d+)  (.{10}) (.{24,}?) (.{16})(.{11})(.{15})(.{15})(.{10})(.{10}) (REL|ABS) +(PASS|FAIL)$"
+    r"^ *(\d+)  (.{10}) (.{24,}?) (.{16})(.{11})(.{15})(.{15})(.{10})(.{10}) (REL|ABS) +(PASS|FAIL|-)$"
 )
 REMARK = re.compile(r"^ {8}(source|failed|no value): (.*)$")
 ITEM = re.compile(r"^   - (.*)$")
