@@ -7,11 +7,10 @@ module keyword_cards
    use deck_report, only: deck_report_type
    use deck_source, only: place_type
    use keywords, only: advice_type, built, find_abbreviated, find_advice, find_keyword, &
-      find_parameter, is_output, is_word, known_keywords, known_names, known_parameter_type, &
-      no_advice, not_needed, not_printed, parameter_names, passed_over, refused, &
-      refused_with_data, word_advice
+      find_parameter, is_output, known_keywords, known_names, known_parameter_type, no_advice, &
+      not_needed, not_printed, parameter_names, passed_over, refused, refused_with_data
    use kinds, only: dp
-   use spelling, only: edit_distance, is_slip, nearest_name
+   use spelling, only: is_slip, nearest_name
    use text, only: is_whole, read_real, string_type, to_upper
    implicit none
    private
@@ -125,34 +124,27 @@ contains
       end do
    end subroutine lose_names
 
-   !> Reports a keyword that nobody knows, with the known one that it likely is by its spelling, or
-   !> with what to write in its place by its meaning. All its cards are one mistake.
+   !> Reports a keyword that nobody knows, with the known one that it likely is by its spelling. All
+   !> its cards are one mistake.
    subroutine report_unknown_keyword(name, is_text, report, card)
       character(*), intent(in) :: name
       logical, intent(in) :: is_text   ! whether a blank follows the star
       type(deck_report_type), intent(inout) :: report
       type(keyword_card_type), intent(inout) :: card
       type(string_type), allocatable :: names(:)
-      character(:), allocatable :: hint, nearest
+      character(:), allocatable :: hint
       integer :: i
 
       names = known_names()
       i = nearest_name(name, names)
-      nearest = 'the nearest known is *'//names(i)%value
-      hint = word_advice(name)
-      if (i <= size(known_keywords) .and. is_slip(name, names(i)%value) .and. &
-         .not. is_word(name)) then
-         hint = nearest
-         card%meant = names(i)%value
-         card%known = i
-      else if (len(hint) > 0) then
-         continue
-      else if (is_text) then
-         hint = 'a comment begins with **'
-      else if (is_near(name, names(i)%value)) then
-         hint = nearest
-      else
-         hint = 'docs/deck.md lists those that are known'
+      hint = 'docs/deck.md lists those that are known'
+      if (is_text) hint = 'a comment begins with **'
+      if (is_slip(name, names(i)%value)) then
+         hint = 'the nearest known is *'//names(i)%value
+         if (i <= size(known_keywords)) then
+            card%meant = names(i)%value
+            card%known = i
+         end if
       end if
       call report%error(card%place, 'unknown keyword *'//to_upper(name)//'; '//hint, &
          'keyword '//to_upper(name))
@@ -294,46 +286,33 @@ contains
       character(:), allocatable :: group, hint, list
       integer :: i
 
-      list = ''
       group = 'parameter '//to_upper(trim(name))//' of *'//card%name
       names = parameter_names(card%known)
-      hint = ''
-      known = find_parameter(card%known, name(:index(name//' ', ' ') - 1))
-      if (known%takes_value) hint = 'an equals sign is missing after '//known%name
-      known%name = ''
-      i = nearest_name(name, names)
-      if (i > 0 .and. len(hint) == 0) then
-         if (is_slip(name, names(i)%value)) known = find_parameter(card%known, names(i)%value)
-         if (len(known%name) > 0 .or. is_near(name, names(i)%value)) hint = 'the nearest known '// &
-            'is '//names(i)%value
-      end if
-      if (is_output(card%name)) then
-         if (len(known%name) > 0) then
-            call report%warning(place, 'unknown '//group//'; '//known%name//' is taken', group)
-         else
-            call add_note(cards%notes, '*'//card%name//': '//to_upper(trim(name))//' is ignored')
-         end if
-         return
-      end if
-      do i = 1, merge(size(names), 0, len(hint) == 0)
+      list = ''
+      do i = 1, size(names)
          other = find_parameter(card%known, names(i)%value)
          if (other%status == built) list = list//', '//other%name
       end do
+      hint = 'it has none'
       if (len(list) > 0) hint = 'it takes '//list(3:)
-      if (len(hint) > 0) then
+      other = find_parameter(card%known, name(:index(name//' ', ' ') - 1))
+      if (other%takes_value) hint = 'an equals sign is missing after '//other%name
+      known%name = ''
+      i = nearest_name(name, names)
+      if (i > 0 .and. .not. other%takes_value) then
+         if (is_slip(name, names(i)%value)) then
+            known = find_parameter(card%known, names(i)%value)
+            hint = 'the nearest known is '//known%name
+         end if
+      end if
+      if (.not. is_output(card%name)) then
          call report%error(place, 'unknown '//group//'; '//hint, group)
+      else if (len(known%name) > 0) then
+         call report%warning(place, 'unknown '//group//'; '//known%name//' is taken', group)
       else
-         call report%error(place, 'unknown parameter '//to_upper(trim(name))//'; *'// &
-            card%name//' has none', group)
+         call add_note(cards%notes, '*'//card%name//': '//to_upper(trim(name))//' is ignored')
       end if
    end subroutine report_unknown_parameter
-
-   !> Whether a name is near enough to a known one to be worth naming: half of its letters agree.
-   pure logical function is_near(name, known)
-      character(*), intent(in) :: name, known
-
-      is_near = 2*edit_distance(to_upper(name), known) <= len(name)
-   end function is_near
 
    !> Position of the blank behind the known keyword with which a field begins that goes on with a
    !> parameter; 0 where it does not.

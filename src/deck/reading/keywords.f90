@@ -7,8 +7,8 @@ module keywords
    private
    public :: keyword_type, known_keywords, find_keyword, known_names, built, not_needed, refused, &
       in_model, in_step, in_both, known_parameter_type, find_parameter, find_abbreviated, &
-      parameter_names, is_output, advice_type, find_advice, word_advice, is_word, no_advice, &
-      passed_over, not_printed, refused_with_data, keyword_lines
+      parameter_names, is_output, advice_type, find_advice, no_advice, passed_over, not_printed, &
+      refused_with_data, keyword_lines
 
    integer, parameter :: built = 1        !! understood
    integer, parameter :: not_needed = 2   !! read, and means nothing to this program
@@ -24,7 +24,6 @@ module keywords
    integer, parameter :: not_printed = 5         !! keyword that asks for output that there is not
    integer, parameter :: refused_with_data = 6   !! keyword that means something with data only
    integer, parameter :: of_parameter = 7        !! parameter, which is refused
-   integer, parameter :: of_word = 8             !! part of an unknown keyword, without blanks
 
    integer, parameter :: many = huge(1)
 
@@ -50,8 +49,7 @@ module keywords
       logical :: takes_value = .false.      !! whether a value may follow
    end type known_parameter_type
 
-   !> Why keywords and parameters of other programs are not taken, or what to write in place of them
-   !> and of words of the field.
+   !> Why keywords and parameters of other programs are not taken, or what to write in their place.
    type :: advice_type
       integer :: kind = no_advice       !! refused, passed_over ...
       character(19) :: keyword = ''     !! for which one stands, or that has a parameter
@@ -192,8 +190,8 @@ module keywords
       keyword_type('END STEP', in_step, 0, 0, ''), &
       keyword_type('INCLUDE', in_both, 0, 0, 'INPUT=')]
 
-   !> Parameters of one keyword are before those of any; the first word that a keyword has decides.
-   type(advice_type), parameter :: advice(96) = [ &
+   !> Parameters of one keyword are before those of any.
+   type(advice_type), parameter :: advice(73) = [ &
       advice_type(passed_over, '', 'CONTACT INCLUSIONS/CONTACT EXCLUSIONS/CONTACT PROPERTY '// &
          'ASSIGNMENT/CONTACT INITIALIZATION ASSIGNMENT/CONTACT FORMULATION', &
          'it belongs to *CONTACT'), &
@@ -314,45 +312,7 @@ module keywords
          'values depend on no field; give the rows of one value of it, and 0'), &
       advice_type(of_parameter, '', 'TEMPERATURE', 'the temperature is that of the analysis'), &
       advice_type(of_parameter, '', 'INPUT', 'data in a file of their own are *INCLUDE, INPUT='), &
-      advice_type(of_parameter, '', 'INSTANCE', 'write the name as INSTANCE.NAME'), &
-      advice_type(of_word, '', 'RADIA', &
-         'heat leaves faces by *FILM and *DFLUX; only contact gaps radiate'), &
-      advice_type(of_word, '', 'FLUX/CECHARGE/HEATSOURCE/HEATGEN', &
-         'heat is applied by *CFLUX at nodes, *DFLUX on faces and in bodies'), &
-      advice_type(of_word, '', 'FILM/CONVECT/COOLING', &
-         'convection is *FILM, on element faces or on a *SURFACE'), &
-      advice_type(of_word, '', 'PRESSURE/TRACTION', &
-         'pressure is P1 to P4 on *DLOAD, or P on *DSLOAD for a *SURFACE'), &
-      advice_type(of_word, '', 'GRAVITY/WEIGHT/CENTRIF/ROTATION', &
-         'weight and rotation are GRAV and CENTRIF on *DLOAD'), &
-      advice_type(of_word, '', 'FORCE/LOAD', &
-         'forces are *CLOAD at nodes, *DLOAD on elements, *DSLOAD on surfaces'), &
-      advice_type(of_word, '', 'DISPLACEMENT/SPC/SUPPORT/CONSTRAINT/FIXED/SYMMETRY', &
-         '*BOUNDARY prescribes displacements (1, 2) and temperatures (11)'), &
-      advice_type(of_word, '', 'TEMP', &
-         '*BOUNDARY prescribes temperatures (11), *INITIAL CONDITIONS gives the first ones'), &
-      advice_type(of_word, '', 'POISSON/YOUNG/MODULUS/STIFFNESS', &
-         '*ELASTIC has Young''s modulus and Poisson''s ratio'), &
-      advice_type(of_word, '', 'CAPACITY', 'heat capacity is *SPECIFIC HEAT, with *DENSITY'), &
-      advice_type(of_word, '', 'ENTHALPY/MELTING', 'heat of melting is *LATENT HEAT'), &
-      advice_type(of_word, '', 'ALPHA/CTE', 'the coefficient of thermal expansion is *EXPANSION'), &
-      advice_type(of_word, '', 'CONDUCTANCE/RESISTANCE', &
-         'the conductance of a contact is *GAP LAW or *GAP CONDUCTANCE'), &
-      advice_type(of_word, '', 'INTERFERENCE/OVERCLOSURE', &
-         'give an overlap as a negative VALUE= of *CLEARANCE'), &
-      advice_type(of_word, '', 'CONTACT', &
-         'contact is *SURFACE, *SURFACE INTERACTION and *CONTACT PAIR'), &
-      advice_type(of_word, '', 'THICKNESS', 'the thickness is the data of *SOLID SECTION'), &
-      advice_type(of_word, '', 'SECTION', 'bodies have *SOLID SECTION'), &
-      advice_type(of_word, '', 'COORDINATE/GRID', 'nodes and their coordinates are *NODE'), &
-      advice_type(of_word, '', 'CONNECTIVITY/TOPOLOGY', 'elements and their nodes are *ELEMENT'), &
-      advice_type(of_word, '', 'TITLE', 'the title is the data of *HEADING'), &
-      advice_type(of_word, '', 'OUTPUT/FILE/PRINT', &
-         'fields are always written; tables are *NODE PRINT, *EL PRINT, *CONTACT PRINT'), &
-      advice_type(of_word, '', 'TOLERANCE/ITERATION/CONVERGENCE', &
-         'tolerance and iterations are parameters of *FIXED POINT'), &
-      advice_type(of_word, '', 'INCREMENT/PERIOD/TIME', &
-         'increments and period are the data of *STATIC, *HEAT TRANSFER or *COUPLED ...')]
+      advice_type(of_parameter, '', 'INSTANCE', 'write the name as INSTANCE.NAME')]
 
 contains
 
@@ -376,7 +336,7 @@ contains
          call append(names, trim(known_keywords(i)%name))
       end do
       do i = 1, size(advice)
-         if (any(advice(i)%kind == [of_parameter, of_word])) cycle
+         if (advice(i)%kind == of_parameter) cycle
          others = split_words(trim(advice(i)%names))
          do k = 1, size(others)
             call append(names, others(k)%value)
@@ -517,7 +477,6 @@ contains
       integer :: first, i, last
 
       do i = 1, size(advice)
-         if (advice(i)%kind == of_word) exit
          if (present(keyword) .neqv. advice(i)%kind == of_parameter) cycle
          if (present(keyword)) then
             if (all(advice(i)%keyword /= [character(32) :: keyword, ''])) cycle
@@ -533,33 +492,5 @@ contains
          end do
       end do
    end function find_advice
-
-   !> Advice on an unknown keyword by the words in it; empty where they tell nothing.
-   pure function word_advice(name) result(words)
-      character(*), intent(in) :: name         !! without the star
-      character(:), allocatable :: words       !! such as "forces are *CLOAD at nodes, ..."
-      type(string_type), allocatable :: parts(:)
-      integer :: i, k
-
-      words = ''
-      do i = 1, size(advice)
-         if (advice(i)%kind /= of_word) cycle
-         parts = split_words(trim(advice(i)%names))
-         do k = 1, size(parts)
-            if (index(to_upper(without_blanks(name)), parts(k)%value) == 0) cycle
-            words = trim(advice(i)%words)
-            return
-         end do
-      end do
-   end function word_advice
-
-   !> Whether an unknown keyword is itself a word of advice, so that its spelling does not count.
-   pure logical function is_word(name)
-      character(*), intent(in) :: name         !! without the star
-      integer :: i
-
-      is_word = any([(advice(i)%kind == of_word .and. index('/'//trim(advice(i)%names)//'/', &
-         '/'//to_upper(without_blanks(name))//'/') > 0, i=1, size(advice))])
-   end function is_word
 
 end module keywords
