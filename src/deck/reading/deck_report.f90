@@ -4,7 +4,7 @@ module deck_report
    use sorting, only: sort_order
    use messages, only: message_type, print_line
    use name_index, only: name_index_type
-   use text, only: append, counted, string_type, to_text, to_upper
+   use text, only: append, string_type, to_text, to_upper
    implicit none
    private
    public :: deck_report_type, frictionless, heatless
@@ -16,7 +16,7 @@ module deck_report
    integer, parameter :: severity_error = 1     !! the deck cannot be solved
    integer, parameter :: severity_warning = 2   !! the deck can be solved, perhaps not as meant
    integer, parameter :: most_errors = 50       !! errors that are printed
-   integer, parameter :: most_alike = 3         !! lines with one mistake that are all told
+   integer, parameter :: most_alike = 3         !! places with one mistake that are all told
 
    !> One error or warning.
    type :: diagnostic_type
@@ -24,7 +24,7 @@ module deck_report
       type(place_type) :: place              !! where
       character(:), allocatable :: message   !! what, in plain words
       character(:), allocatable :: group     !! what it has in common with others; empty for none
-      integer :: places = 1                  !! places of its group, of which the first is told
+      integer :: places = 1                  !! places like it, of which the first is told
       logical :: is_root_cause = .false.     !! of what else is wrong on its card
    end type diagnostic_type
 
@@ -33,13 +33,6 @@ module deck_report
       character(:), allocatable :: noun   !! its kind in upper case, such as NODE SET; empty for any
       character(:), allocatable :: name   !! in upper case; empty for any
    end type lost_type
-
-   !> A message in the order of the deck. It may stand for further lines with the same mistake.
-   type :: printed_diagnostic_type
-      integer :: index = 0        !! of the diagnostic
-      integer :: more_lines = 0   !! further lines with the mistake, which are not told
-      integer :: last = 0         !! image of the last of these
-   end type printed_diagnostic_type
 
    !> The errors and warnings of one deck, and the card images to which they point.
    type :: deck_report_type
@@ -266,19 +259,18 @@ contains
    subroutine print_report(self, unit)
       class(deck_report_type), intent(in) :: self
       integer, intent(in) :: unit                     !! open for formatted output
-      type(printed_diagnostic_type), allocatable :: told(:)
+      type(diagnostic_type), allocatable :: told(:)
       type(message_type) :: message
       integer :: i, errors
 
       told = told_by(self)
       errors = 0
       do i = 1, size(told)
-         associate (severity => self%diagnostics(told(i)%index)%severity, &
-            place => self%diagnostics(told(i)%index)%place)
-            if (severity == severity_error) errors = errors + 1
-            if (severity == severity_error .and. errors > most_errors) cycle
-            message = message_of(self, told(i))
-            call print_line(unit, message%as_line())
+         if (told(i)%severity == severity_error) errors = errors + 1
+         if (told(i)%severity == severity_error .and. errors > most_errors) cycle
+         message = message_of(self, told(i))
+         call print_line(unit, message%as_line())
+         associate (place => told(i)%place)
             if (place%image == 0) cycle
             associate (image => self%source%images(place%image)%value)
                call print_card(unit, image, min(place%column, len(image) + 1))
@@ -293,7 +285,7 @@ contains
    function message_list(self) result(list)
       class(deck_report_type), intent(in) :: self
       type(message_type), allocatable :: list(:)
-      type(printed_diagnostic_type), allocatable :: told(:)
+      type(diagnostic_type), allocatable :: told(:)
       integer :: i
 
       told = told_by(self)
@@ -303,100 +295,73 @@ contains
       end do
    end function message_list
 
-   function message_of(self, told) result(message)
+   function message_of(self, diagnostic) result(message)
       class(deck_report_type), intent(in) :: self
-      type(printed_diagnostic_type), intent(in) :: told
+      type(diagnostic_type), intent(in) :: diagnostic
       type(message_type) :: message
 
-      associate (diagnostic => self%diagnostics(told%index), source => self%source)
-         message%severity = 'error'
-         if (diagnostic%severity == severity_warning) message%severity = 'warning'
-         message%file = self%path
-         message%words = diagnostic%message
-         associate (place => diagnostic%place)
-            if (place%image > 0) then
-               message%file = source%paths(source%file(place%image))%value
-               message%line = source%line(place%image)
-               message%column = column_of(source%images(place%image)%value, place%column)
-            end if
-         end associate
-         if (diagnostic%places > 1) message%words = message%words//' ('// &
-            to_text(diagnostic%places)//' such places)'
+      message%severity = 'error'
+      if (diagnostic%severity == severity_warning) message%severity = 'warning'
+      message%file = self%path
+      message%words = diagnostic%message
+      associate (place => diagnostic%place, source => self%source)
+         if (place%image > 0) then
+            message%file = source%paths(source%file(place%image))%value
+            message%line = source%line(place%image)
+            message%column = column_of(source%images(place%image)%value, place%column)
+         end if
       end associate
-      if (told%more_lines > 0) message%words = message%words//' (likewise on '// &
-         counted(told%more_lines, 'more line')//', the last is '// &
-         self%source%words_of(place_type(told%last))//')'
+      if (diagnostic%places > 1) message%words = message%words//' ('// &
+         to_text(diagnostic%places)//' such places)'
    end function message_of
 
-   !> The messages in the order of the deck, one mistake on more than a few lines of a card once.
+   !> The messages in the order of the deck, each once where *CYCLE repeats its card; one mistake in
+   !> more than a few places of a card is told at the first.
    function told_by(self) result(told)
       class(deck_report_type), intent(in) :: self
-      type(printed_diagnostic_type), allocatable :: told(:)
-      type(name_index_type) :: kinds
-      character(:), allocatable :: kind, line
-      integer, allocatable :: first_of(:), order(:)   ! (kinds), (told)
-      integer :: first(self%count), card, cards(self%source%count), i, last
+      type(diagnostic_type), allocatable :: told(:)
+      type(name_index_type) :: kinds, known
+      character(:), allocatable :: key, kind, line
+      integer :: alike(self%count), cards(0:self%source%count), first(self%count), &
+         first_of(self%count), i, order(self%count)
+      logical :: is_told(self%count)
 
-      order = without_repeats(self, order_of(self))
-      told = [(printed_diagnostic_type(order(i)), i=1, size(order))]
+      order = order_of(self)
+      allocate (told(self%count))
       cards = 0
-      last = 0
       ! Fewer messages are all told.
-      do i = 1, merge(size(cards), 0, size(told) > most_alike)
+      do i = 1, merge(self%source%count, 0, self%count > most_alike)
          line = adjustl(self%source%images(i)%value)
-         if (index(line, '*') == 1 .and. index(line, '**') /= 1) last = i
-         cards(i) = last
+         cards(i) = merge(i, cards(i - 1), index(line, '*') == 1 .and. index(line, '**') /= 1)
       end do
-      allocate (first_of(0))
+      first = 0
+      alike = 0
       do i = 1, size(told)
-         first(i) = i
-         associate (diagnostic => self%diagnostics(told(i)%index))
-            if (diagnostic%place%image == 0 .or. diagnostic%places > 1) cycle
-            card = cards(diagnostic%place%image)
-            if (card == 0) cycle
-            kind = to_text(diagnostic%severity)//' '//to_text(card)//' '// &
-               without_numbers(diagnostic%message)
-            if (kinds%find(kind) == 0) then
-               call kinds%add(kind)
-               first_of = [first_of, i]
-            end if
-            first(i) = first_of(kinds%find(kind))
+         told(i) = self%diagnostics(order(i))
+         associate (place => told(i)%place)
+            key = to_text(place%image)//':'//to_text(place%column)//' '//told(i)%message
+            is_told(i) = known%find(key) == 0
+            if (.not. is_told(i)) cycle
+            call known%add(key)
+            if (told(i)%places > 1 .or. cards(place%image) == 0) cycle
+            kind = to_text(told(i)%severity)//' '//to_text(cards(place%image))//' '// &
+               without_numbers(told(i)%message)
          end associate
+         if (kinds%find(kind) == 0) then
+            call kinds%add(kind)
+            first_of(kinds%find(kind)) = i
+         end if
+         first(i) = first_of(kinds%find(kind))
+         alike(first(i)) = alike(first(i)) + 1
       end do
       do i = 1, size(told)
-         associate (leader => told(first(i)), image => self%diagnostics(told(i)%index)%place%image)
-            if (first(i) == i) then
-               leader%last = image
-            else if (leader%last /= image) then
-               leader%last = image
-               leader%more_lines = leader%more_lines + 1
-            end if
-         end associate
+         if (first(i) == 0) cycle
+         if (alike(first(i)) <= most_alike) cycle
+         is_told(i) = first(i) == i
+         told(i)%places = alike(i)
       end do
-      where (told%more_lines < most_alike) told%more_lines = 0
-      told = pack(told, [(first(i) == i .or. told(first(i))%more_lines == 0, i=1, size(told))])
+      told = pack(told, is_told)
    end function told_by
-
-   !> An order without the messages that a card has again as *CYCLE repeats it.
-   function without_repeats(self, order) result(kept)
-      class(deck_report_type), intent(in) :: self
-      integer, intent(in) :: order(:)
-      integer, allocatable :: kept(:)
-      type(name_index_type) :: known
-      character(:), allocatable :: key
-      logical :: is_new(size(order))
-      integer :: i
-
-      do i = 1, size(order)
-         associate (diagnostic => self%diagnostics(order(i)))
-            key = to_text(diagnostic%place%image)//':'//to_text(diagnostic%place%column)//' '// &
-               diagnostic%message
-         end associate
-         is_new(i) = known%find(key) == 0
-         if (is_new(i)) call known%add(key)
-      end do
-      kept = pack(order, is_new)
-   end function without_repeats
 
    !> The order of the diagnostics by image, then column, then as reported.
    function order_of(self) result(order)
