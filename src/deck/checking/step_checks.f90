@@ -360,6 +360,8 @@ contains
       type(contact_definition_type), intent(in) :: one, other
       integer :: k
 
+      share_a_face = .false.
+      if (min(one%slave, one%master, other%slave, other%master) == 0) return   ! one is not known
       associate (mine => faces_of(mesh, one), others => faces_of(mesh, other))
          share_a_face = any([(any(mine(1, k) == others(1, :) .and. mine(2, k) == others(2, :)), &
             k=1, size(mine, 2))])
