@@ -1,7 +1,7 @@
 !> Misspellings: names that are likely meant where an unknown one is written, and characters
 !> that word processors put in place of quotes, blanks and minus signs.
 module spelling
-   use text, only: string_type, to_upper, without_blanks
+   use text, only: listed, string_type, to_upper, without_blanks
    implicit none
    private
    public :: nearest_name, nearest_known, known_choices, edit_distance, full_word, is_slip, &
@@ -84,14 +84,10 @@ contains
       character(*), intent(in) :: name             !! what was written
       type(string_type), intent(in) :: names(:)    !! the list
       character(:), allocatable :: hint            !! such as "; known: MOD, NEW"
-      integer :: i
 
       hint = nearest_known(name, names)
       if (len(hint) > 0 .or. size(names) == 0 .or. size(names) > most_listed) return
-      hint = '; known: '//names(1)%value
-      do i = 2, size(names)
-         hint = hint//', '//names(i)%value
-      end do
+      hint = '; known: '//listed(names, most_listed)
    end function known_choices
 
    !> The one of several words that a word is, or begins as in Abaqus, whatever the blanks; empty

@@ -5,10 +5,10 @@ module text
    use kinds, only: dp, long
    implicit none
    private
-   public :: string_type, others, counted, to_text, all_digits, few_digits, rounded, digits_above, &
-      with_decimals, or_blank, percent, quoted, to_upper, without_blanks, is_same_name, &
-      read_integer, read_real, append, is_whole, integer_fault, real_fault, smallest_magnitude, &
-      largest_magnitude, split_words
+   public :: string_type, others, counted, listed, to_text, all_digits, few_digits, rounded, &
+      digits_above, with_decimals, or_blank, percent, quoted, to_upper, without_blanks, &
+      is_same_name, read_integer, read_real, append, is_whole, integer_fault, real_fault, &
+      smallest_magnitude, largest_magnitude, split_words
 
    integer, parameter :: largest_exponent = 300   !! beyond it reading could overflow
    !> Magnitudes of numbers that are not 0: products of three of them stay finite.
@@ -386,6 +386,21 @@ contains
 
       words = to_text(n)//' '//noun//trim(merge(' ', 's', n == 1))
    end function counted
+
+   !> The first ones of some names, separated by commas, and how many more there are.
+   pure function listed(names, most) result(words)
+      type(string_type), intent(in) :: names(:)
+      integer, intent(in) :: most              !! names that are listed
+      character(:), allocatable :: words       !! such as A, B and 3 more
+      integer :: i
+
+      words = ''
+      do i = 1, min(size(names), most)
+         if (i > 1) words = words//', '
+         words = words//names(i)%value
+      end do
+      if (size(names) > most) words = words//' and '//to_text(size(names) - most)//' more'
+   end function listed
 
    !> Text that may not have been given.
    pure function or_blank(text) result(string)

@@ -13,7 +13,7 @@ module accuracy_lines
    use no_estimates, only: at_corner, grows, no_reason, words_of_reason
    use quantity_types, only: quantity_type
    use run_summaries, only: accuracy_words_type
-   use text, only: append, counted, digits_above, few_digits, percent, to_text
+   use text, only: append, counted, digits_above, few_digits, listed, percent, string_type, to_text
    use unit_labels, only: unit_label
    implicit none
    private
@@ -103,20 +103,18 @@ contains
       type(accuracy_rounds_type), intent(in) :: accuracy
       type(contact_points_type), intent(in) :: interfaces(:)
       character(:), allocatable :: words
-      integer :: d, missed
+      type(string_type), allocatable :: missed(:)
+      integer :: d
 
-      words = ''
-      missed = 0
+      allocate (missed(0))
       associate (last => accuracy%rounds(size(accuracy%rounds)))
          do d = 1, size(accuracy%demands)
-            if (all(last%findings(d, :)%is_met())) cycle
-            missed = missed + 1
-            if (missed <= most_named) words = words//merge(': ', ', ', missed == 1)// &
-               demand_name(accuracy, d, interfaces)
+            if (.not. all(last%findings(d, :)%is_met())) call append(missed, &
+               demand_name(accuracy, d, interfaces))
          end do
       end associate
-      if (missed > most_named) words = words//' and '//to_text(missed - most_named)//' more'
-      if (missed > 0) words = verdict(accuracy)//'; not met'//words
+      words = ''
+      if (size(missed) > 0) words = verdict(accuracy)//'; not met: '//listed(missed, most_named)
    end function missed_words
 
    !> The uncertainty at the end of the step that is furthest from a target; the summary tells the

@@ -21,7 +21,7 @@ module summary
    use records, only: body_uncertainty_type, contact_record_type, increment_outcome_type, &
       increment_record_type, uncertainty_type
    use steps, only: solves_heat
-   use text, only: append, few_digits, or_blank, percent, string_type, to_text
+   use text, only: append, few_digits, listed, or_blank, percent, string_type, to_text
    use unit_labels, only: unit_label
    implicit none
    private
@@ -65,7 +65,7 @@ module summary
       character(:), allocatable, private :: cycle             !! what the last cycle did, or none
       type(string_type), allocatable, private :: steps(:)     !! a line for each step and interface
       !> Load factors of the folds so far; unallocated for none
-      real(dp), allocatable, private :: folds(:)
+      type(string_type), allocatable, private :: folds(:)
    contains
       procedure :: take
       procedure :: add_lines
@@ -100,10 +100,7 @@ contains
       end if
       self%last = record%increment_outcome_type
       if (allocated(record%cycle)) self%cycle = record%cycle
-      if (record%is_fold) then
-         if (.not. allocated(self%folds)) allocate (self%folds(0))
-         self%folds = [self%folds, record%load_factor]
-      end if
+      if (record%is_fold) call append(self%folds, to_text(record%load_factor))
       if (allocated(self%heat)) deallocate (self%heat)
       if (allocated(self%displacement)) deallocate (self%displacement)
       associate (fields => record%fields)
@@ -185,8 +182,9 @@ contains
          call append(lines, in_columns(self%steps(i)%value))
       end do
       call append(lines, 'at '//when(self, or_blank(model%load_label))//':')
-      if (allocated(self%folds)) call append(lines, 'the branch turns at load factor'//trim(merge( &
-         's', ' ', size(self%folds) > 1))//' '//listed(self%folds)//mark_of(reason_of_run(model)))
+      if (allocated(self%folds)) call append(lines, 'the branch turns at load factor'// &
+         trim(merge('s', ' ', size(self%folds) > 1))//' '//listed(self%folds, most_folds)// &
+         mark_of(reason_of_run(model)))
       if (has_many(size(interfaces))) then
          call add_largest(self, model, interfaces, lines)
          call add_fields(self, model, lines)
@@ -349,6 +347,7 @@ contains
       type(mesh_type), intent(in) :: mesh
       type(body_uncertainty_type), intent(in) :: errors
       character(:), allocatable :: words
+      type(string_type), allocatable :: places(:)
       integer :: i
 
       words = ''
@@ -356,12 +355,10 @@ contains
       words = 'singular corner, round which stress '//trim(merge('or strain is', 'is          ', &
          any(errors%node(first_strain + 1:) > 0)))//' larger, may have no limit and has no '// &
          'estimate: '
-      do i = 1, min(size(errors%corners), most_corners)
-         if (i > 1) words = words//', '
-         words = words//place_words(mesh, errors%corners(i))
+      do i = 1, size(errors%corners)
+         call append(places, place_words(mesh, errors%corners(i)))
       end do
-      if (size(errors%corners) > most_corners) words = words//' and '// &
-         to_text(size(errors%corners) - most_corners)//' more'
+      words = words//listed(places, most_corners)
    end function corner_words
 
    !> A line of the summary: a quantity, its value, its uncertainty, its unit, and where or how that
@@ -379,21 +376,6 @@ contains
       if (unit /= '-') line = trim('  '//label//adjustr(value)//uncertainty//' '//unit)
       if (words /= '') line = line//', '//words
    end function summary_line
-
-   !> The first numbers of a list, in words.
-   pure function listed(values) result(words)
-      real(dp), intent(in) :: values(:)
-      character(:), allocatable :: words
-      integer :: i
-
-      words = ''
-      do i = 1, min(size(values), most_folds)
-         if (i > 1) words = words//', '
-         words = words//to_text(values(i))
-      end do
-      if (size(values) > most_folds) words = words//' and '//to_text(size(values) - most_folds)// &
-         ' more'
-   end function listed
 
    !> The temperatures, the heat and the displacement of a deck without contact.
    subroutine add_fields(self, model, lines)

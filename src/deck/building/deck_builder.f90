@@ -49,7 +49,6 @@ contains
       type(model_type), intent(out), target :: model
       type(deck_report_type), intent(inout) :: report     !! what is wrong with the deck
       type(deck_type) :: deck
-      integer :: i
 
       if (size(cards%keywords) == 0) return
       deck%deck_report_type = report
@@ -57,11 +56,7 @@ contains
       deck%model => model
       deck%mesh => model%mesh
       deck%verifiable = verifiable
-      if (allocated(cards%notes)) then
-         do i = 1, size(cards%notes)
-            call deck%note(cards%notes(i)%value)
-         end do
-      end if
+      if (allocated(cards%notes)) deck%notes = cards%notes
       call check_structure(cards, deck)
       call build_options(deck)
       call build_mesh(deck)

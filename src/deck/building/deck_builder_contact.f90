@@ -15,7 +15,7 @@ module deck_builder_contact
    use kinds, only: dp
    use mesh, only: surface_type
    use name_index, only: is_pattern, matches
-   use text, only: counted, read_real, to_text, to_upper
+   use text, only: append, counted, listed, read_real, string_type, to_text, to_upper
    implicit none
    private
    public :: build_contacts, build_ties, build_contact_change
@@ -76,10 +76,10 @@ contains
       type(contact_definition_type) :: contact
       type(surface_type) :: part
       type(place_list_type) :: places
-      character(:), allocatable :: left_out
+      type(string_type), allocatable :: left_out(:)
       integer, allocatable :: masters(:), slaves(:)
       integer, parameter :: most_named = 5
-      integer :: chosen, i, left, pairs
+      integer :: chosen, i
 
       call deck%need_items(data, 1, 'surface', 'slave surface', slaves)
       call deck%need_items(data, 2, 'surface', 'master surface', masters)
@@ -97,18 +97,14 @@ contains
             'rigid body in full, and each slave on a card of its own', deck, chosen)
          if (chosen == 0) return
       end do
-      left_out = ''
-      left = 0
-      pairs = 0
+      allocate (left_out(0))
       do i = 1, size(slaves)
          contact = common
          call find_facing(deck%mesh, slaves(i), masters, chosen, part%faces)
          if (chosen == 0) then
-            left = left + 1
-            if (left <= most_named) left_out = left_out//', '//deck%mesh%surfaces(slaves(i))%name
+            call append(left_out, deck%mesh%surfaces(slaves(i))%name)
             cycle
          end if
-         pairs = pairs + 1
          contact%slave = slaves(i)
          contact%master = chosen
          if (size(part%faces, 2) < size(deck%mesh%surfaces(chosen)%faces, 2) .and. &
@@ -123,16 +119,18 @@ contains
          if (.not. deck%card%has('NAME')) contact%name = deck%mesh%surfaces(slaves(i))%name
          call add_contact(.true., contact, deck)
       end do
-      if (left > most_named) left_out = left_out//' and '//to_text(left - most_named)//' more'
-      if (pairs > 0) call deck%note('*CONTACT PAIR '//to_upper(data%text(1))//', '// &
-         to_upper(data%text(2))//': '//counted(pairs, 'pair')//', named after the slave surfaces')
-      if (pairs == 0) then
-         call deck%error(data%place(1), 'none of '//left_out(3:)//' is opposite a face of '// &
-            to_upper(data%text(2))//'; name surfaces that look at each other, slaves first')
-      else if (left_out /= '') then
-         call deck%note('*CONTACT PAIR '//to_upper(data%text(1))//', '//to_upper(data%text(2))// &
-            ': opposite no face of the master, and in no pair: '//left_out(3:))
+      if (size(left_out) == size(slaves)) then
+         call deck%error(data%place(1), 'none of '//listed(left_out, most_named)// &
+            ' is opposite a face of '//to_upper(data%text(2))//'; name surfaces that look at '// &
+            'each other, slaves first')
+         return
       end if
+      associate (names => '*CONTACT PAIR '//to_upper(data%text(1))//', '//to_upper(data%text(2)))
+         call deck%note(names//': '//counted(size(slaves) - size(left_out), 'pair')//', named '// &
+            'after the slave surfaces')
+         if (size(left_out) > 0) call deck%note(names//': opposite no face of the master, and '// &
+            'in no pair: '//listed(left_out, most_named))
+      end associate
    end subroutine add_matching
 
    !> The interfaces of two surfaces, or of those that patterns mean; none after an error.
@@ -370,30 +368,22 @@ contains
       end do
    end subroutine change_interferences
 
-   !> Warns of an interference against a clearance, but not where it allows a part of an overlap;
-   !> and of one that is given twice.
+   !> Warns of an interference that is given twice, or works against a clearance, but not where it
+   !> allows a part of an overlap.
    subroutine check_clearance(data, contact, interference, deck)
       type(data_card_type), intent(in) :: data
       type(contact_definition_type), intent(in) :: contact
       real(dp), intent(in) :: interference
       type(deck_type), intent(inout) :: deck
-      character(:), allocatable :: meaning
+      logical :: is_twice
 
-      associate (gap => contact%clearance + interference)
-         if (abs(contact%clearance - interference) <= 0.0_dp .and. &
-            abs(gap) > 0.0_dp) call deck%warning(data%place(3), contact%title()//': the '// &
-            'interference and the *CLEARANCE are both '//to_text(interference)//', and the '// &
-            'faces begin with the sum, '//to_text(gap)//'; give a gap that stays by *CLEARANCE '// &
-            'alone, one that the step takes away by *CONTACT INTERFERENCE alone')
-         if (contact%clearance*interference >= 0.0_dp) return
-         if (contact%clearance < 0.0_dp .and. gap <= 0.0_dp) return
-         meaning = 'the faces touch'
-         if (gap < 0.0_dp) meaning = 'the faces overlap by '//to_text(-gap)
-         if (gap > 0.0_dp) meaning = 'the faces are '//to_text(gap)//' apart'
+      associate (clearance => contact%clearance, gap => contact%clearance + interference)
+         is_twice = abs(clearance - interference) <= 0.0_dp .and. abs(gap) > 0.0_dp
+         if (.not. is_twice .and. clearance*interference >= 0.0_dp) return
+         if (.not. is_twice .and. clearance < 0.0_dp .and. gap <= 0.0_dp) return
          call deck%warning(data%place(3), contact%title()//': the interference '// &
-            to_text(interference)//' and the *CLEARANCE '//to_text(contact%clearance)//' work '// &
-            'against each other: with the sum, '//to_text(gap)//', '//meaning//'; give the gap '// &
-            'that is meant by one of them')
+            to_text(interference)//' and the *CLEARANCE '//to_text(clearance)//' add up to '// &
+            to_text(gap)//'; give the gap that is meant by one of them')
       end associate
    end subroutine check_clearance
 

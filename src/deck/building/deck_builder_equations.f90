@@ -337,12 +337,10 @@ contains
       if (.not. valid) return
       fault = ''
       if (norm2(section%normal) <= 0.0_dp) fault = 'is closed: it has no normal'
-      if (any(deck%mesh%element_nodes == section%reference)) fault = 'has node '// &
-         to_text(deck%mesh%node_number(section%reference))//', which elements have, too: the '// &
-         'reference node is a node of its own'
-      if (any(deck%model%couplings%reference == section%reference)) fault = 'has node '// &
-         to_text(deck%mesh%node_number(section%reference))//', which is the reference node of '// &
-         'another card'
+      if (any(deck%mesh%element_nodes == section%reference) .or. &
+         any(deck%model%couplings%reference == section%reference)) fault = 'has node '// &
+         to_text(deck%mesh%node_number(section%reference))//', which elements or another card '// &
+         'have: the reference node is a node of its own'
       if (len(fault) == 0) call cut(deck, section, fault)
       if (len(fault) > 0) call deck%error(deck%card%place, 'this section '//fault)
    end subroutine build_section

@@ -17,7 +17,7 @@ module deck_checks
    use refinement, only: numbering_fault
    use step_checks, only: check_sliding
    use steps, only: solves_heat, solves_mechanics
-   use text, only: to_text, to_upper
+   use text, only: append, listed, string_type, to_text, to_upper
    implicit none
    private
    public :: check_model, check_usage
@@ -192,7 +192,7 @@ contains
    subroutine check_names(noun, deck)
       character(*), intent(in) :: noun
       type(deck_type), intent(inout) :: deck
-      character(:), allocatable :: names
+      type(string_type), allocatable :: names(:)
       integer, allocatable :: places(:)
       integer :: i, n
 
@@ -202,13 +202,11 @@ contains
          deck%source%file(deck%cards%keywords(places)%place%image) == 1)
       n = size(places)
       if (n == 0) return
-      names = ''
-      do i = 1, min(n, most_names)
-         names = names//', '//to_upper(deck%cards%keywords(places(i))%text('NAME'))
+      do i = 1, n
+         call append(names, to_upper(deck%cards%keywords(places(i))%text('NAME')))
       end do
-      if (n > most_names) names = names//' and '//to_text(n - most_names)//' more'
       call deck%warning(deck%cards%keywords(places(1))%place, 'nothing uses the '//noun// &
-         trim(merge(' ', 's', n == 1))//names(2:))
+         trim(merge(' ', 's', n == 1))//' '//listed(names, most_names))
    end subroutine check_names
 
    !> Warns of amplitudes that end long before the step in which a request begins to follow them,

@@ -12,7 +12,7 @@ module step_checks
    use kinds, only: dp
    use materials, only: expansion_heat, follows_temperature, has_law, heat_capacity, &
       least_heat_capacity, of_density, of_elasticity, of_expansion, of_specific_heat
-   use mesh, only: mesh_type
+   use mesh, only: surface_type
    use model, only: follows_temperatures, model_type
    use steps, only: analysis_coupled, load_film_coefficient, solves_heat, step_type
    use text, only: to_text
@@ -320,7 +320,7 @@ contains
          if (contact%adjusts) words = 'ADJUST=: gaps are those of the displaced faces; move '// &
             'the nodes instead'
          do k = 1, size(model%ties)
-            if (share_a_face(model%mesh, contact, model%ties(k)%faces)) words = &
+            if (share_a_face(model%mesh%surfaces, contact, model%ties(k)%faces)) words = &
                'tie '//model%ties(k)%faces%name//' of the same face: what is tied cannot slide'
          end do
       end associate
@@ -344,28 +344,21 @@ contains
       end do
    end function what_is_beside
 
-   pure function faces_of(mesh, definition) result(faces)
-      type(mesh_type), intent(in) :: mesh
-      type(contact_definition_type), intent(in) :: definition
-      integer, allocatable :: faces(:, :)        ! (2, faces) element, side
-
-      associate (of_slave => mesh%surfaces(definition%slave)%faces, &
-         of_master => mesh%surfaces(definition%master)%faces)
-         faces = reshape([of_slave, of_master], [2, size(of_slave, 2) + size(of_master, 2)])
-      end associate
-   end function faces_of
-
-   pure logical function share_a_face(mesh, one, other)
-      type(mesh_type), intent(in) :: mesh
+   !> Whether two pairs, if their surfaces are known, have a face in common.
+   pure logical function share_a_face(surfaces, one, other) result(shares)
+      type(surface_type), intent(in) :: surfaces(:)
       type(contact_definition_type), intent(in) :: one, other
+      integer, allocatable :: mine(:, :), others(:, :)
       integer :: k
 
-      share_a_face = .false.
-      if (min(one%slave, one%master, other%slave, other%master) == 0) return   ! one is not known
-      associate (mine => faces_of(mesh, one), others => faces_of(mesh, other))
-         share_a_face = any([(any(mine(1, k) == others(1, :) .and. mine(2, k) == others(2, :)), &
-            k=1, size(mine, 2))])
-      end associate
+      shares = .false.
+      if (min(one%slave, one%master, other%slave, other%master) == 0) return
+      mine = reshape([surfaces(one%slave)%faces, surfaces(one%master)%faces], [2, &
+         size(surfaces(one%slave)%faces, 2) + size(surfaces(one%master)%faces, 2)])
+      others = reshape([surfaces(other%slave)%faces, surfaces(other%master)%faces], [2, &
+         size(surfaces(other%slave)%faces, 2) + size(surfaces(other%master)%faces, 2)])
+      shares = any([(any(mine(1, k) == others(1, :) .and. mine(2, k) == others(2, :)), &
+         k=1, size(mine, 2))])
    end function share_a_face
 
 end module step_checks

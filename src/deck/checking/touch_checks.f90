@@ -161,13 +161,7 @@ contains
       logical :: is_cut(0:sides%count)
       integer :: i, k
 
-      allocate (pairs(size(model%contacts) + size(model%ties)))
-      do i = 1, size(model%contacts)
-         pairs(i) = model%contacts(i)
-      end do
-      do i = 1, size(model%ties)
-         pairs(size(model%contacts) + i) = model%ties(i)%faces
-      end do
+      pairs = [model%contacts, model%ties%faces]
       do k = 1, size(of_surface)
          if (all(pairs%slave /= k) .and. all(pairs%master /= k)) cycle
          associate (faces => model%mesh%surfaces(k)%faces)

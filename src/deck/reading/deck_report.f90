@@ -243,15 +243,13 @@ contains
    function first_error(self) result(message)
       class(deck_report_type), intent(in) :: self
       character(:), allocatable :: message            !! one sentence; empty for none
-      integer, allocatable :: order(:)
+      type(message_type), allocatable :: list(:)
       integer :: i
 
       message = ''
-      order = order_of(self)
-      do i = 1, self%count
-         if (self%diagnostics(order(i))%severity /= severity_error) cycle
-         message = self%diagnostics(order(i))%message
-         return
+      list = self%messages()
+      do i = size(list), 1, -1
+         if (list(i)%severity == 'error') message = list(i)%words
       end do
    end function first_error
 

@@ -56,10 +56,7 @@ contains
       character(*), intent(in) :: name        !! name as in the table of keywords
       integer :: k
 
-      has_stand_in = .false.
-      do k = 1, size(cards%keywords)
-         if (cards%keywords(k)%meant == name) has_stand_in = .true.
-      end do
+      has_stand_in = any([(cards%keywords(k)%meant == name, k=1, size(cards%keywords))])
    end function has_stand_in
 
    !> Checks the order of the cards, and what must not be missing.
