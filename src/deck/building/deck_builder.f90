@@ -16,9 +16,8 @@ module deck_builder
    use deck_builder_interactions, only: build_interactions
    use deck_builder_materials, only: build_materials, build_sections
    use deck_builder_mesh, only: build_elements, build_nodes
-   use deck_builder_node_surfaces, only: build_node_surfaces
    use deck_builder_options, only: build_load_axis, build_options, build_regions
-   use deck_builder_sets, only: build_sets, build_surfaces
+   use deck_builder_sets, only: build_node_surfaces, build_sets, build_surfaces
    use deck_builder_steps, only: build_steps
    use deck_checks, only: check_model, check_usage
    use deck_context, only: deck_type

@@ -1,15 +1,16 @@
 !> Faces that touch though nothing relates them: of two bodies without a pair or a tie, of one body
-!> along a seam, and of elements that do not share whole sides.
+!> along a seam, and of elements that do not share whole sides; bodies that are drawn on each other,
+!> where nothing keeps one from passing through the other.
 module touch_checks
-   use mesh_bodies, only: body_name
    use contact_definitions, only: contact_definition_type
    use deck_context, only: deck_type
+   use element_kinds, only: element_corner_count
    use element_sides, only: element_sides_type, find_sides
    use equations, only: coupled_nodes, equation_nodes
    use kinds, only: dp
    use mesh, only: mesh_type
+   use mesh_bodies, only: body_name
    use model, only: model_type
-   use overlap_checks, only: check_overlaps
    use sorting, only: invert_lists, number_index_type, sort_order
    use text, only: counted, others, to_text
    implicit none
@@ -33,6 +34,9 @@ module touch_checks
       integer :: other = 0     !! side of the node that lies on it
       integer :: partner = 0   !! node of the side at the same place, or 0
    end type touch_type
+
+   integer, parameter :: most_looked_at = 50      !! elements of a body
+   real(dp), parameter :: drawn_in = 0.9_dp       !! part of the way from the middle to a corner
 
 contains
 
@@ -331,5 +335,105 @@ contains
       place = -1.0_dp
       if (sum((apart - xi*along + xi**2*bulge)**2) <= distance**2) place = 0.5_dp*(xi + 1)
    end function place_on
+
+   !> Warns of every body that lies wholly inside another.
+   subroutine check_overlaps(deck, sides)
+      type(deck_type), intent(inout) :: deck
+      type(element_sides_type), intent(in) :: sides   !! those of all elements
+      real(dp) :: box(4, deck%mesh%body_count)        ! lowest x and y, highest x and y
+      logical :: is_told(deck%mesh%body_count)
+      !> Elements of every body, and its free sides
+      integer, allocatable :: elements(:), first(:), first_side(:), outline(:)
+      integer :: inner, n, outer
+
+      box(:2, :) = huge(1.0_dp)
+      box(3:, :) = -huge(1.0_dp)
+      do n = 1, size(deck%mesh%node_body)
+         if (deck%mesh%node_body(n) == 0) cycle
+         associate (x => deck%mesh%coordinates(:, n), own => box(:, deck%mesh%node_body(n)))
+            own = [min(own(:2), x), max(own(3:), x)]
+         end associate
+      end do
+      is_told = .false.
+      do inner = 1, size(box, 2)
+         do outer = 1, size(box, 2)
+            if (outer == inner .or. is_told(outer)) cycle
+            associate (low => box(:2, :), high => box(3:, :))
+               if (any(low(:, inner) < low(:, outer) .or. high(:, inner) > high(:, outer))) cycle
+            end associate
+            if (.not. allocated(first)) then
+               call sort_by_body(deck%mesh%element_body, first, elements)
+               call sort_by_body(merge(deck%mesh%element_body(sides%elements(1, :sides%count)), 0, &
+                  sides%elements(2, :sides%count) == 0), first_side, outline)
+            end if
+            if (.not. lies_inside(deck%mesh, elements(first(inner):first(inner + 1) - 1), &
+               sides%ends(:, outline(first_side(outer):first_side(outer + 1) - 1)))) cycle
+            is_told(inner) = .true.
+            call deck%warning(deck%node_place(findloc(deck%mesh%node_body, inner, dim=1)), &
+               body_name(deck%model, inner)//' lies wholly inside '//body_name(deck%model, &
+               outer)//': both fill the same place; check the positions of the bodies')
+            exit
+         end do
+      end do
+   end subroutine check_overlaps
+
+   !> The members of every body, those of body b from first(b) on.
+   pure subroutine sort_by_body(body, first, members)
+      integer, intent(in) :: body(:)                 ! of each, 0 for none
+      integer, allocatable, intent(out) :: first(:), members(:)
+
+      call invert_lists(reshape(body, [1, size(body)]), min(body, 1), maxval(body), first, members)
+   end subroutine sort_by_body
+
+   !> Whether elements of one body, evenly chosen, are within another with all their corners: these
+   !> are drawn in a little, as outlines may coincide.
+   pure logical function lies_inside(mesh, elements, outline)
+      type(mesh_type), intent(in) :: mesh
+      integer, intent(in) :: elements(:)     ! of the one
+      integer, intent(in) :: outline(:, :)   ! (3, sides) of the other: corner, midside or 0, corner
+      integer, allocatable :: corners(:)
+      real(dp) :: middle(2)
+      integer :: i, k
+
+      lies_inside = .false.
+      do i = 1, size(elements), size(elements)/most_looked_at + 1
+         corners = mesh%element_nodes(:element_corner_count(mesh%element_kind(elements(i))), &
+            elements(i))
+         middle = sum(mesh%coordinates(:, corners), dim=2)/size(corners)
+         do k = 1, size(corners)
+            if (.not. is_within(mesh, outline, middle + drawn_in*(mesh%coordinates(:, &
+               corners(k)) - middle))) return
+         end do
+      end do
+      lies_inside = .true.
+   end function lies_inside
+
+   !> Whether a ray from a point along x crosses an outline an odd number of times.
+   pure logical function is_within(mesh, outline, x)
+      type(mesh_type), intent(in) :: mesh
+      integer, intent(in) :: outline(:, :)   ! (3, sides)
+      real(dp), intent(in) :: x(2)
+      integer :: k
+
+      is_within = .false.
+      do k = 1, size(outline, 2)
+         if (outline(2, k) == 0) then
+            if (crosses(outline(1, k), outline(3, k))) is_within = .not. is_within
+         else
+            if (crosses(outline(1, k), outline(2, k))) is_within = .not. is_within
+            if (crosses(outline(2, k), outline(3, k))) is_within = .not. is_within
+         end if
+      end do
+   contains
+      pure logical function crosses(first, second)
+         integer, intent(in) :: first, second   ! nodes of a straight line
+
+         associate (a => mesh%coordinates(:, first) - x, b => mesh%coordinates(:, second) - x)
+            crosses = .false.
+            if ((a(2) > 0.0_dp) .eqv. (b(2) > 0.0_dp)) return
+            crosses = (a(1)*b(2) - a(2)*b(1) > 0.0_dp) .eqv. (b(2) > a(2))
+         end associate
+      end function crosses
+   end function is_within
 
 end module touch_checks
