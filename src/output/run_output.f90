@@ -229,9 +229,7 @@ contains
             ! The verdict is the first one.
             call append(lines, repeat(' ', merge(0, 3, i == 1))//targets(i)%value)
          end do
-         do i = 1, size(rounds)
-            call append(lines, rounds(i)%value)
-         end do
+         lines = [lines, rounds]
          do i = 1, size(advice)
             call append(lines, '   '//advice(i)%value)
          end do

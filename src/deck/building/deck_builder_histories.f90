@@ -89,19 +89,18 @@ contains
          associate (points => deck%time_points(n))
             points%total_time = choice(deck%card, 'TIME', 'STEP TIME/TOTAL TIME', deck, 'STEP '// &
                'TIME') == 'TOTAL TIME'
-            allocate (points%times(0))
-            do j = 1, size(deck%card%data)
-               valid = .true.
-               if (deck%card%has('GENERATE')) then
-                  call read_row(deck%card%data(j), 'start/end/interval', deck, values, valid)
-                  if (valid .and. .not. (values(3) > 0.0_dp .and. values(2) >= &
-                     values(1))) call deck%error(deck%card%data(j)%place(3), 'time points go '// &
-                     'up from the start to the end by a positive interval')
-                  if (valid .and. values(3) > 0.0_dp) points%times = [points%times, (values(1) + &
-                     i*values(3), i=0, floor((values(2) - values(1))/values(3) + 1.0e-6_dp))]
-               end if
-            end do
-            if (.not. deck%card%has('GENERATE')) points%times = values_of('time', deck)
+            if (.not. deck%card%has('GENERATE')) then
+               points%times = values_of('time', deck)
+            else
+               allocate (points%times(0))
+               do j = 1, size(deck%card%data)
+                  call read_row(deck%card%data(j), 'start/end/interval >0 =1', deck, values, valid)
+                  if (valid .and. values(2) < values(1)) call deck%error( &
+                     deck%card%data(j)%place(2), 'the end is before the start')
+                  points%times = [points%times, (values(1) + i*values(3), i=0, floor((values(2) - &
+                     values(1))/values(3) + 1.0e-6_dp))]
+               end do
+            end if
             if (any(points%times(2:) <= points%times(:size(points%times) - 1))) call deck%error( &
                deck%card%place, 'time points must ascend')
          end associate

@@ -277,22 +277,23 @@ contains
    !> Warns of constants in other units than the deck says, and of temperatures below absolute zero.
    subroutine check_units(deck)
       type(deck_type), intent(inout) :: deck
-      real(dp) :: constant, degree, metre, pascal, ratio, watt
+      type(unit_type) :: degree, metre, pascal, watt
+      real(dp) :: constant, ratio
       integer :: k, m
 
-      degree = size_of(scale_label(deck%model%units%temperature), temperatures)
-      metre = size_of(to_upper(deck%model%units%length), lengths)
-      watt = size_of(deck%model%units%power, powers)
-      pascal = size_of(to_upper(deck%model%units%stress), stresses)
+      degree = unit_of(scale_label(deck%model%units%temperature), temperatures)
+      metre = unit_of(to_upper(deck%model%units%length), lengths)
+      watt = unit_of(deck%model%units%power, powers)
+      pascal = unit_of(to_upper(deck%model%units%stress), stresses)
       m = 0
       do k = 1, size(deck%cards%keywords)
          call deck%open_card(k)
          select case (deck%card%name)
          case ('PHYSICAL CONSTANTS')
-            call check_zero(deck)
-            if (min(degree, metre, watt) <= 0.0_dp .or. .not. deck%card%has( &
+            call check_zero(degree, deck)
+            if (min(degree%size, metre%size, watt%size) <= 0.0_dp .or. .not. deck%card%has( &
                'STEFAN BOLTZMANN')) cycle
-            constant = stefan_boltzmann*metre**2*degree**4/watt
+            constant = stefan_boltzmann*metre%size**2*degree%size**4/watt%size
             associate (given => deck%model%constants%stefan_boltzmann, units => deck%model%units)
                if (abs(given - constant) <= other_digits*constant) cycle
                call deck%warning(deck%card%place_of('STEFAN BOLTZMANN'), 'the constant of '// &
@@ -303,16 +304,16 @@ contains
          case ('MATERIAL')
             m = m + 1
          case ('ELASTIC')
-            if (any(solves_mechanics(deck%model%steps%analysis))) call check_property(m, pascal, &
+            if (any(solves_mechanics(deck%model%steps%analysis))) call check_property(m, pascal%size, &
                deck)
          case ('CONDUCTIVITY')
-            if (min(degree, metre) > 0.0_dp .and. any(solves_heat( &
-               deck%model%steps%analysis))) call check_property(m, watt/(metre*degree), deck)
+            if (min(degree%size, metre%size) > 0.0_dp .and. any(solves_heat( &
+               deck%model%steps%analysis))) call check_property(m, watt%size/(metre%size*degree%size), deck)
          case ('LATENT HEAT')
-            if (m == 0 .or. degree <= 0.0_dp) cycle
+            if (m == 0 .or. degree%size <= 0.0_dp) cycle
             associate (material => deck%model%materials(m))
                if (.not. allocated(material%melting)) cycle
-               ratio = degree*sum(material%melting%content)/heat_capacity(material)
+               ratio = degree%size*sum(material%melting%content)/heat_capacity(material)
                if (ratio < latent_ratios(1) .or. ratio > latent_ratios(2)) call deck%warning( &
                   deck%card%place, 'the latent heat of '//material%name//' is '//to_text(ratio)// &
                   ' K times its specific heat, beyond the '//to_text(latent_ratios(1))//' to '// &
@@ -352,14 +353,13 @@ contains
       end associate
    end subroutine check_property
 
-   subroutine check_zero(deck)
+   subroutine check_zero(scale, deck)
+      type(unit_type), intent(in) :: scale                ! of temperature
       type(deck_type), intent(inout) :: deck
       character(:), allocatable :: message
-      type(unit_type) :: scale
       real(dp) :: least(2)
 
       if (.not. deck%card%has('ABSOLUTE ZERO')) return
-      scale = unit_of(scale_label(deck%model%units%temperature), temperatures)
       least = temperature_range(deck%model)
       associate (given => deck%model%constants%absolute_zero, label => deck%model%units%temperature)
          message = 'absolute zero is '//to_text(given)
@@ -378,16 +378,6 @@ contains
       end associate
       call deck%warning(deck%card%place_of('ABSOLUTE ZERO'), message)
    end subroutine check_zero
-
-   !> Size of a unit, 0 where the label is not known.
-   pure real(dp) function size_of(label, units)
-      character(*), intent(in) :: label
-      type(unit_type), intent(in) :: units(:)
-      type(unit_type) :: unit
-
-      unit = unit_of(label, units)
-      size_of = unit%size
-   end function size_of
 
    !> Finds a unit; its size is 0 where the label is not known.
    pure type(unit_type) function unit_of(label, units)

@@ -18,7 +18,6 @@ module deck_reader
    integer, parameter :: deepest_include = 16   !! files that may include each other
    integer, parameter :: most_files = 1000      !! of a deck, each counted as often as it is read
    integer, parameter :: longest_card = 100000  !! bytes of a line that is no comment
-   character(*), parameter :: too_many = 'includes'   !! group of errors that are told once
 
 contains
 
@@ -157,19 +156,16 @@ contains
                'itself')
             cycle
          else if (size(open_files) == deepest_include) then
-            call open_lines%report%error(place, 'more than '//to_text(deepest_include)// &
-               ' files include each other', too_many)
-            call open_lines%report%lose()
-            cycle
+            include_fault = 'more than '//to_text(deepest_include)//' files include each other'
          else if (size(open_lines%report%source%paths) == most_files) then
-            call open_lines%report%error(place, 'the deck has more than '//to_text(most_files)// &
-               ' files', too_many)
-            call open_lines%report%lose()
-            cycle
+            include_fault = 'the deck has more than '//to_text(most_files)//' files'
+         else
+            call read_file(included, beside(found, included), open_files, open_lines, &
+               include_fault)
+            if (len(include_fault) == 0) cycle
+            include_fault = included//' cannot be read: '//include_fault
          end if
-         call read_file(included, beside(found, included), open_files, open_lines, include_fault)
-         if (len(include_fault) == 0) cycle
-         call open_lines%report%error(place, included//' cannot be read: '//include_fault)
+         call open_lines%report%error(place, include_fault, include_fault)
          call open_lines%report%lose()
       end do
    end subroutine read_file
