@@ -105,9 +105,9 @@ contains
          words(i) = rest(:blank - 1)
          rest = trim(adjustl(rest(blank:)))
       end do
-      if (len(rest) > 0 .or. words(2) == '') then
-         call deck%error(deck%card%place_of('UNITS'), 'UNITS= has two to five words: length, '// &
-            'stress, power, temperature, time')
+      if (len(rest) > 0 .or. words(2) == '' .or. index(deck%card%text('UNITS'), ',') > 0) then
+         call deck%error(deck%card%place_of('UNITS'), 'UNITS= has two to five words and no '// &
+            'commas: length, stress, power, temperature, time')
          return
       end if
       deck%model%units%length = trim(words(1))

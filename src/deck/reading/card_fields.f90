@@ -56,39 +56,23 @@ contains
       last_text = verify(line, blanks, back=.true.)
    end function last_text
 
-   !> Splits a line at its commas. Quotes stay in the fields, but for one that is not closed; a
-   !> comma inside quotes, but for those of FORMAT= and SOURCE=, and a quote without its end are
-   !> errors.
+   !> Splits a line at its commas, but for those inside quotes. Quotes stay in the fields, but for one
+   !> that is not closed, which is an error.
    subroutine split_fields(line, image, report, fields)
       character(*), intent(in) :: line                            !! card image
       integer, intent(in) :: image                                !! its running number
       type(deck_report_type), intent(inout) :: report             !! receives errors
       type(field_type), allocatable, intent(out) :: fields(:)     !! at least one field
-      integer :: commas(len(line) + 1), i, n, first, opened, start, told
-      logical :: holds_commas
+      integer :: commas(len(line) + 1), i, n, first, opened, start
 
-      holds_commas = .false.
-      told = 0
       opened = 0
       n = 0
       do i = 1, last_text(line)
          if (line(i:i) == '"') then
             opened = merge(i, 0, opened == 0)
-            first = 1
-            if (n > 0) first = commas(n) + 1
-            if (opened > 0) holds_commas = any(to_upper(without_blanks(line(first:i - 1))) == &
-               ['FORMAT=', 'SOURCE='])
-         else if (line(i:i) == ',') then
-            if (opened > 0 .and. holds_commas) then
-               cycle
-            else if (opened > 0) then
-               if (opened /= told) call report%error(place_type(image, i), &
-                  'commas are not allowed inside quotes; write blanks instead')
-               told = opened
-            else
-               n = n + 1
-               commas(n) = i
-            end if
+         else if (line(i:i) == ',' .and. opened == 0) then
+            n = n + 1
+            commas(n) = i
          end if
       end do
       if (opened > 0) call report%error(place_type(image, opened), 'this quote is not closed')
