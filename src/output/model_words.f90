@@ -76,30 +76,25 @@ contains
          first = i + 1
       end do
    contains
-      pure function analysis_of(step) result(analysis)
-         integer, intent(in) :: step
+      pure function analysis_of(number) result(analysis)
+         integer, intent(in) :: number
          character(:), allocatable :: analysis
 
-         select case (model%steps(step)%analysis)
-         case (analysis_static)
-            analysis = 'mechanics'
-            if (model%steps(step)%is_viscous) analysis = 'mechanics in real time, scheme '// &
-               trim(model%steps(step)%scheme%name)
-         case (analysis_heat)
-            analysis = 'heat'//storage(step)//', scheme '//trim(model%steps(step)%scheme%name)
-         case default
-            analysis = 'heat and mechanics'//storage(step)//', scheme '// &
-               trim(model%steps(step)%scheme%name)
-         end select
+         associate (step => model%steps(number))
+            select case (step%analysis)
+            case (analysis_static)
+               analysis = 'mechanics'
+               if (.not. step%is_viscous) return
+               analysis = 'mechanics in real time'
+            case (analysis_heat)
+               analysis = 'heat'
+            case default
+               analysis = 'heat and mechanics'
+            end select
+            if (step%is_transient) analysis = analysis//', transient'
+            analysis = analysis//', scheme '//trim(step%scheme%name)
+         end associate
       end function analysis_of
-
-      pure function storage(step) result(words)
-         integer, intent(in) :: step
-         character(:), allocatable :: words
-
-         words = ''
-         if (model%steps(step)%is_transient) words = ', transient'
-      end function storage
    end function step_words
 
    !> The ends of a range.

@@ -105,9 +105,9 @@ def test_many_includes_meet_a_limit(tmp_path):
     for level in range(20):
         write(tmp_path / f"{level}.inc", [f"*INCLUDE, INPUT={level + 1}.inc"] * 8)
     write(tmp_path / "20.inc", ["** nothing"])
-    for first, message in ((10, "more than 1000 files"), (0, "more than 16 files include each")):
+    for first in (10, 0):
         deck = write(tmp_path / "deck.inp", BODY, [f"*INCLUDE, INPUT={first}.inc"], STEP)
-        refused(deck, message)
+        refused(deck, "more than 1000 files, or more than 16 within each other")
 
 
 @pytest.mark.parametrize("line", ["x" * 10_000_000, "*" + "Y" * 10_000_000, "1," * 5_000_000,

@@ -234,10 +234,9 @@ contains
          if (deck%index_of('contact pair', name) > 0) call deck%error(place, 'contact pair '// &
             name//' is defined twice')
          call deck%add_name('contact pair', name)
-         if (scan(name, '/@') > 0) call deck%error(place, 'the name of a contact pair must not '// &
+         if (scan(name, '/@') > 0 .or. name == '.' .or. name == '..') call deck%error(place, &
+            'the name of a contact pair, a group of the result file, must not be . or .. or '// &
             'contain / or @')
-         if (name == '.' .or. name == '..') call deck%error(place, 'a contact pair must not be '// &
-            'named . or ..: its name is a group of the result file')
       end associate
    end subroutine add_contact
 

@@ -244,9 +244,7 @@ contains
       request%value = values(3)
       point = values(4:6)
       direction = values(7:)
-      if (norm2(direction) <= 0.0_dp) then
-         call deck%error(data%place(7), 'the direction is zero')
-      else if (norm2(direction(:2)) <= 0.0_dp) then
+      if (norm2(direction(:2)) <= 0.0_dp .and. abs(direction(3)) > 0.0_dp) then
          request%kind = load_centrifugal
          loads(1:2) = request%value
          loads(3:4) = -request%value*point(:2)
@@ -255,7 +253,7 @@ contains
             request%value = loads(i)
             call deck%loads%add(request)
          end do
-      else if (norm2(direction([1, 3])) > 0.0_dp) then
+      else if (norm2(direction([1, 3])) > 0.0_dp .or. abs(direction(2)) <= 0.0_dp) then
          call deck%error(data%place(7), 'the axis must be the y axis, or along z')
       else if (norm2(point([1, 3])) > 0.0_dp) then
          call deck%error(data%place(4), 'the axis must be the y axis: x and z are 0 on it')

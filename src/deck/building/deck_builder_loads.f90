@@ -8,7 +8,6 @@ module deck_builder_loads
    use load_requests, only: request_type
    use materials, only: reference_nodes
    use model, only: model_type
-   use spelling, only: is_slip
    use steps, only: dof_temperature, load_body_force, load_body_heat, load_centrifugal, &
       load_face_heat, load_film_coefficient, load_force, load_gravity, load_nodal_heat, &
       load_pressure, load_temperature, load_traction
@@ -244,15 +243,10 @@ contains
             len_trim(support_degrees(i)))]
          return
       end if
-      i = findloc([(is_slip(to_upper(data%text(2)), trim(support_names(i))), i=1, &
-         size(support_names))], .true., dim=1)
-      if (i > 0) call deck%error(data%place(2), 'unknown support '//to_upper(data%text(2))//'; '// &
-         'the nearest known is '//trim(support_names(i)))
-      valid = valid .and. i == 0
       if (.not. valid) return
       first = 0
-      call read_field(data, 2, 'first degree of freedom, such as 1, 2 or, of the temperature, 11', &
-         deck, first, valid)
+      call read_field(data, 2, 'first degree of freedom (1, 2 or 11) or a support such as '// &
+         'ENCASTRE', deck, first, valid)
       last = first
       if (.not. valid) return
       advice = ''

@@ -56,9 +56,12 @@ contains
                call read_quantity(data, deck%verifiable, '', deck, quantity, check%level)
                if (quantity > 0) then
                   check%quantity = trim(deck%verifiable(quantity)%name)
-                  if (allocated(check%level)) call check_level(data, deck%verifiable(quantity), &
-                     deck)
-                  call check_where(data, deck%verifiable(quantity)%kind, deck, check)
+                  associate (known => deck%verifiable(quantity))
+                     if (allocated(check%level) .and. (known%is_geometry .or. &
+                        known%values > 1)) call deck%error(data%place(1), check%quantity// &
+                        ' is not a single value that changes: it reaches nothing')
+                     call check_where(data, known%kind, deck, check)
+                  end associate
                end if
                if (deck%analyses_sound) call read_when(data, deck, check)
                check%expects = kind /= 'NONE'
@@ -176,20 +179,6 @@ contains
       name = trim(name(:at))
    end subroutine split_level
 
-   !> Only a single value that changes can reach another one.
-   subroutine check_level(data, quantity, deck)
-      type(data_card_type), intent(in) :: data
-      type(quantity_type), intent(in) :: quantity
-      type(deck_type), intent(inout) :: deck
-
-      if (quantity%is_geometry) then
-         call deck%error(data%place(1), trim(quantity%name)//' does not change: it reaches nothing')
-      else if (quantity%values > 1) then
-         call deck%error(data%place(1), trim(quantity%name)//' has several values: one of '// &
-            'them, such as edge_contact, can reach another')
-      end if
-   end subroutine check_level
-
    !> Checks where a quantity is judged; the only interface of a deck need not be named.
    subroutine check_where(data, kind, deck, check)
       type(data_card_type), intent(in) :: data
@@ -251,11 +240,9 @@ contains
       end if
       nodes = target%members(deck%mesh%node_sets)
       nodes = pack(nodes, used(nodes))
-      if (size(nodes) == 0 .and. kind == of_sections) then
+      if (size(nodes) == 0 .and. kind /= of_nodes) then
          call deck%error(data%place(2), data%text(2)//' is not the reference node of a '// &
-            '*PRE-TENSION SECTION')
-      else if (size(nodes) == 0 .and. kind == of_references) then
-         call deck%error(data%place(2), data%text(2)//' is not the REF NODE of a *SOLID SECTION')
+            trim(merge('*PRE-TENSION SECTION', '*SOLID SECTION      ', kind == of_sections)))
       else if (size(nodes) == 0) then
          if (all(deck%element_valid)) call deck%missing(data%place(2), 'no element has a node '// &
             'of '//data%text(2)//': it has no values', 'element')

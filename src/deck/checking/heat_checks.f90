@@ -304,11 +304,12 @@ contains
          case ('MATERIAL')
             m = m + 1
          case ('ELASTIC')
-            if (any(solves_mechanics(deck%model%steps%analysis))) call check_property(m, pascal%size, &
-               deck)
+            if (any(solves_mechanics(deck%model%steps%analysis))) call check_property(m, &
+               pascal%size, deck)
          case ('CONDUCTIVITY')
-            if (min(degree%size, metre%size) > 0.0_dp .and. any(solves_heat( &
-               deck%model%steps%analysis))) call check_property(m, watt%size/(metre%size*degree%size), deck)
+            if (min(degree%size, metre%size) > 0.0_dp .and. &
+               any(solves_heat(deck%model%steps%analysis))) call check_property(m, &
+               watt%size/(metre%size*degree%size), deck)
          case ('LATENT HEAT')
             if (m == 0 .or. degree%size <= 0.0_dp) cycle
             associate (material => deck%model%materials(m))

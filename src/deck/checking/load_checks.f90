@@ -198,9 +198,7 @@ contains
          end associate
       end do
       if (any(deck%dropped)) call check_dropped(deck)
-      do i = 0, size(deck%model%steps)
-         call check_conflicts(deck, i)
-      end do
+      call check_conflicts(deck)
    end subroutine check_boundaries
 
    !> Where ORDER=1 drops all nodes of a data card, their corners have values in their place.
@@ -240,16 +238,15 @@ contains
 
    !> Warns where a data card replaces what another one of the same step prescribes. What is
    !> before the first step may be replaced in it.
-   subroutine check_conflicts(deck, step)
+   subroutine check_conflicts(deck)
       type(deck_type), intent(inout) :: deck
-      integer, intent(in) :: step                          ! 0 for what is before the first
       integer :: given(3, size(deck%mesh%node_number)), i, j, dof, n, node
       integer, allocatable :: nodes(:)
 
       given = 0
       do i = 1, deck%boundaries%count
          associate (request => deck%boundaries%items(i))
-            if (request%step /= step) cycle
+            if (request%step /= deck%boundaries%items(max(i - 1, 1))%step) given = 0
             dof = min(request%component, 3)
             nodes = request%members(deck%mesh%node_sets)
             n = 0

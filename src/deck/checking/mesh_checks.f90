@@ -126,11 +126,8 @@ contains
             fault = 'is the third on the side'
          else if (sides(1)%middle == sides(2)%middle) then
             cycle
-         else if (min(sides(1)%middle, sides(2)%middle) == 0) then
-            fault = 'has a different number of nodes from its neighbour '// &
-               to_text(deck%mesh%element_number(sides(1)%element))//' on the side'
          else
-            fault = 'has a different midside node from its neighbour '// &
+            fault = 'differs in its midside node from its neighbour '// &
                to_text(deck%mesh%element_number(sides(1)%element))//' on the side'
          end if
          call deck%error(deck%element_place(sides(i)%element), 'element '// &

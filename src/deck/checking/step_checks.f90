@@ -123,20 +123,13 @@ contains
       character(:), allocatable :: words
       real(dp) :: first
 
+      words = ''
       first = step%first_increment/step%period
-      words = 'the branch begins with the first increment, at load factor '//to_text(first)//', '
-      associate (range => step%continuation%range)
-         if (first < range(1) .or. first > range(2)) then
-            words = words//'outside its range from '//to_text(range(1))//' to '//to_text(range(2))
-         else if (step%continuation%rises .and. first >= range(2)) then
-            words = words//'the end of its range; give a shorter first increment, a higher '// &
-               'HIGHEST= or DIRECTION=DOWN'
-         else if (.not. step%continuation%rises .and. first <= range(1)) then
-            words = words//'the end of its range; give a longer first increment, a lower '// &
-               'LOWEST= or DIRECTION=UP'
-         else
-            words = ''
-         end if
+      associate (range => step%continuation%range, rises => step%continuation%rises)
+         if (first < range(1) .or. first > range(2) .or. abs(first - range(merge(2, 1, &
+            rises))) <= 0.0_dp) words = 'the branch begins with the first increment, at load '// &
+            'factor '//to_text(first)//', which must be within its range from '// &
+            to_text(range(1))//' to '//to_text(range(2))//' and not at the end'
       end associate
    end function obstacle_of_start
 

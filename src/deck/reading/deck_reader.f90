@@ -7,6 +7,7 @@ module deck_reader
    use deck_report, only: deck_report_type
    use deck_source, only: earlier_deck_type, place_type, read_lines
    use deck_structure, only: check_data_counts, repeat_steps
+   use file_calls, only: identity_of
    use generated_cards, only: generate_cards
    use keywords, only: keyword_lines
    use text, only: append, string_type, to_text, to_upper, without_blanks
@@ -121,11 +122,11 @@ contains
    recursive subroutine read_file(path, found, above, open_lines, fault)
       character(*), intent(in) :: path                       !! file as given, for messages
       character(*), intent(in) :: found                      !! file as seen from the current folder
-      type(string_type), intent(in) :: above(:)              !! files that include it
+      type(string_type), intent(in) :: above(:)              !! identities of those that include it
       type(card_lines_type), intent(inout) :: open_lines     !! what is open
       character(:), allocatable, intent(out) :: fault        !! why it is not read; else empty
       type(string_type), allocatable :: lines(:), open_files(:)
-      character(:), allocatable :: target_path, included, include_fault
+      character(:), allocatable :: identity, included, include_fault
       type(place_type) :: place
       integer :: i, k, file
 
@@ -140,7 +141,7 @@ contains
       end if
       call append(open_lines%cards%files, found)
       open_files = above
-      call append(open_files, plain(found))
+      call append(open_files, identity_of(found))
       do i = 1, size(lines)
          if (allocated(open_lines%report%source%earlier)) then
             if (keyword_of(lines(i)%value) == 'STEP') call take_earlier_steps(open_lines)
@@ -150,15 +151,16 @@ contains
          if (.not. allocated(open_lines%include)) cycle
          call move_alloc(open_lines%include, included)
          place = open_lines%include_place
-         target_path = plain(beside(found, included))
-         if (any([(open_files(k)%value == target_path, k=1, size(open_files))])) then
+         identity = identity_of(beside(found, included))
+         if (any([(len(identity) > 0 .and. open_files(k)%value == identity, k=1, &
+            size(open_files))])) then
             call open_lines%report%error(place, included//' is already open: it would include '// &
                'itself')
             cycle
-         else if (size(open_files) == deepest_include) then
-            include_fault = 'more than '//to_text(deepest_include)//' files include each other'
-         else if (size(open_lines%report%source%paths) == most_files) then
-            include_fault = 'the deck has more than '//to_text(most_files)//' files'
+         else if (size(open_files) == deepest_include .or. &
+            size(open_lines%report%source%paths) == most_files) then
+            include_fault = 'the deck has more than '//to_text(most_files)//' files, or more '// &
+               'than '//to_text(deepest_include)//' within each other'
          else
             call read_file(included, beside(found, included), open_files, open_lines, &
                include_fault)
@@ -228,21 +230,6 @@ contains
          return
       end do
    end function length_fault
-
-   !> A path without the steps ./ that lead nowhere.
-   pure function plain(path) result(short)
-      character(*), intent(in) :: path
-      character(:), allocatable :: short
-      integer :: dot
-
-      short = '/'//path
-      dot = index(short, '/./')
-      do while (dot > 0)
-         short = short(:dot)//short(dot + 3:)
-         dot = index(short, '/./')
-      end do
-      short = short(2:)
-   end function plain
 
    !> An included file is looked for beside the file that includes it, then in the current folder.
    function beside(path, included) result(found)

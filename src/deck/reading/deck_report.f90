@@ -1,6 +1,6 @@
 !> Errors and warnings of a deck with their places, printed in one go.
 module deck_report
-   use deck_source, only: column_of, print_card, without_numbers, deck_source_type, place_type
+   use deck_source, only: column_of, print_card, deck_source_type, place_type
    use sorting, only: sort_order
    use messages, only: message_type, print_line
    use name_index, only: name_index_type
@@ -343,7 +343,7 @@ contains
             call known%add(key)
             if (told(i)%places > 1 .or. cards(place%image) == 0) cycle
             kind = to_text(told(i)%severity)//' '//to_text(cards(place%image))//' '// &
-               without_numbers(told(i)%message)
+               without_digits(told(i)%message)
          end associate
          if (kinds%find(kind) == 0) then
             call kinds%add(kind)
@@ -360,6 +360,17 @@ contains
       end do
       told = pack(told, is_told)
    end function told_by
+
+   pure function without_digits(message) result(kind)
+      character(*), intent(in) :: message
+      character(:), allocatable :: kind
+      integer :: i
+
+      kind = ''
+      do i = 1, len(message)
+         if (scan(message(i:i), '0123456789') == 0) kind = kind//message(i:i)
+      end do
+   end function without_digits
 
    !> The order of the diagnostics by image, then column, then as reported.
    function order_of(self) result(order)

@@ -8,8 +8,7 @@ module deck_source
    use utf8, only: as_utf8, character_count, first_byte, printable
    implicit none
    private
-   public :: deck_source_type, earlier_deck_type, place_type, read_lines, print_card, column_of, &
-      without_numbers
+   public :: deck_source_type, earlier_deck_type, place_type, read_lines, print_card, column_of
 
    integer, parameter :: first_capacity = 1024   !! images before the list grows for the first time
    integer, parameter :: most_bytes = 1000000000   !! of a file
@@ -191,28 +190,5 @@ contains
       column_of = character_count(image(:min(byte - 1, len(image)))) + 1 + &
          max(0, byte - 1 - len(image))
    end function column_of
-
-   !> A message with one mark for each run of digits.
-   pure function without_numbers(message) result(kind)
-      character(*), intent(in) :: message   !! any
-      character(:), allocatable :: kind
-      character(*), parameter :: digits = '0123456789'
-      character(len(message)) :: buffer
-      integer :: i, n
-      logical :: is_digit, was_digit
-
-      n = 0
-      was_digit = .false.
-      do i = 1, len(message)
-         is_digit = index(digits, message(i:i)) > 0
-         if (.not. (is_digit .and. was_digit)) then
-            n = n + 1
-            buffer(n:n) = message(i:i)
-            if (is_digit) buffer(n:n) = '0'
-         end if
-         was_digit = is_digit
-      end do
-      kind = buffer(:n)
-   end function without_numbers
 
 end module deck_source
