@@ -311,8 +311,7 @@ contains
             'either ADD or REMOVE')
          if (.not. allocated(changes%pairs)) allocate (changes%pairs(0))
          do j = 1, size(deck%card%data)
-            call read_contacts(deck%card%data(j), 2, 'slave surface, master surface', deck, &
-               contacts)
+            call read_contacts(deck%card%data(j), 2, deck, contacts)
             do i = 1, size(contacts)
                pair%contact = contacts(i)
                changes%pairs = [changes%pairs, pair]
@@ -349,14 +348,9 @@ contains
       do j = 1, size(deck%card%data)
          valid = .true.
          given%value = 1.0_dp
-         if (given%shrinks) then
-            call read_contacts(deck%card%data(j), 2, 'slave surface, master surface', deck, &
-               contacts)
-         else
-            call read_contacts(deck%card%data(j), 3, &
-               'slave surface, master surface, interference', deck, contacts)
-            call read_field(deck%card%data(j), 3, 'interference', deck, given%value, valid)
-         end if
+         call read_contacts(deck%card%data(j), merge(2, 3, given%shrinks), deck, contacts)
+         if (.not. given%shrinks) call read_field(deck%card%data(j), 3, 'interference', deck, &
+            given%value, valid)
          if (.not. valid) cycle
          do i = 1, size(contacts)
             given%contact = contacts(i)
@@ -387,10 +381,9 @@ contains
    end subroutine check_clearance
 
    !> The interfaces of the two surfaces that a data card names; none after an error.
-   subroutine read_contacts(data, most, layout, deck, contacts)
+   subroutine read_contacts(data, most, deck, contacts)
       type(data_card_type), intent(in) :: data
-      integer, intent(in) :: most                 ! most fields
-      character(*), intent(in) :: layout
+      integer, intent(in) :: most                 ! most fields: 3 with an interference
       type(deck_type), intent(inout) :: deck
       integer, allocatable, intent(out) :: contacts(:)
       character(:), allocatable :: master, slave
@@ -399,7 +392,8 @@ contains
       valid = .true.
       call read_field(data, 1, 'slave surface', deck, slave, valid)
       call read_field(data, 2, 'master surface', deck, master, valid)
-      call check_extra(data, most, layout, deck)
+      call check_extra(data, most, 'slave surface, master surface'//trim(merge( &
+         ', interference', '              ', most == 3)), deck)
       call find_contacts([data%place(1), data%place(2)], slave, master, deck, contacts)
    end subroutine read_contacts
 

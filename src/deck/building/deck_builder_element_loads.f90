@@ -211,10 +211,9 @@ contains
       integer :: i
 
       vector = 0.0_dp
-      if (abs(given(4)) > 0.0_dp) then
-         call deck%error(data%place(6), 'the direction lies in the plane: z must be 0')
-      else if (norm2(given(2:3)) <= 0.0_dp) then
-         call deck%error(data%place(4), 'the direction is zero')
+      if (abs(given(4)) > 0.0_dp .or. norm2(given(2:3)) <= 0.0_dp) then
+         call deck%error(data%place(merge(6, 4, abs(given(4)) > 0.0_dp)), 'the direction lies '// &
+            'in the plane and is not zero')
       else
          vector = given(1)*given(2:3)/norm2(given(2:3))
       end if

@@ -152,11 +152,10 @@ contains
             else
                call report%error(card%place, '*'//card%name//' without *'//card%name(5:))
             end if
-         else if (open%level /= outside(level) .and. level == at_instance) then
-            call report%error(card%place, '*INSTANCE must be between *ASSEMBLY and *END ASSEMBLY')
          else if (open%level /= outside(level)) then
-            call report%error(card%place, '*'//card%name// &
-               ' must not be within another *PART or *ASSEMBLY')
+            call report%error(card%place, '*'//card%name//' must be '//trim(merge( &
+               'directly in an *ASSEMBLY      ', 'outside of *PART and *ASSEMBLY', &
+               level == at_instance)))
          else
             open%level = level
             open%opened = k

@@ -11,7 +11,7 @@ module card_lines
    use element_types, only: element_type_fields
    use keywords, only: is_output
    use spelling, only: find_look_alike
-   use text, only: to_text, to_upper
+   use text, only: to_upper
    implicit none
    private
    public :: card_lines_type, default_width
@@ -111,7 +111,6 @@ contains
    subroutine finish(self)
       class(card_lines_type), intent(inout) :: self        !! what is open
       type(field_type), allocatable :: fields(:)
-      character(:), allocatable :: lack
 
       if (allocated(self%pending)) then
          call move_alloc(self%pending, fields)
@@ -119,11 +118,8 @@ contains
          call take_keyword(self, fields)
       else if (allocated(self%comma)) then
          call take_last(self, fields)
-         lack = ''
-         if (self%element_fields > 0) lack = ': the element has '//to_text(size(fields) - 1)// &
-            ' of its '//to_text(self%element_fields - 1)//' nodes'
          call self%report%error(place_type(self%comma%place%image, self%comma%place%column - 1), &
-            'the card ends in a comma, but nothing continues it'//lack)
+            'the card ends in a comma, but nothing continues it')
          self%comma%undefined = .true.
          fields = [fields, self%comma]
          call add_data(self%cards, fields, self%comma%place)

@@ -71,7 +71,14 @@ contains
          call lose_definitions(cards%keywords(k), report)
       end do
       if (report%has_lost()) return
-      call need_step(cards, report)
+      place = cards%last
+      do k = size(cards%keywords), 1, -1
+         associate (card => cards%keywords(k))
+            if (card%known == 0 .or. len(card%meant) > 0) cycle
+            if (known_keywords(card%known)%section == in_step) place = card%place
+         end associate
+      end do
+      call need_card(cards, 'STEP', place, report)
       step_open = .false.
       after_step = .false.
       do k = 1, size(cards%keywords)
@@ -159,25 +166,6 @@ contains
          end associate
       end do
    end subroutine check_data_counts
-
-   !> Reports a deck without *STEP at the first card that belongs in one.
-   subroutine need_step(cards, report)
-      type(cards_type), intent(in) :: cards
-      class(deck_report_type), intent(inout) :: report
-      integer :: k
-
-      if (size(cards_of(cards, 'STEP')) > 0 .or. has_stand_in(cards, 'STEP')) return
-      do k = 1, size(cards%keywords)
-         associate (card => cards%keywords(k))
-            if (card%known == 0 .or. len(card%meant) > 0) cycle
-            if (known_keywords(card%known)%section /= in_step) cycle
-            call report%error(card%place, 'the deck has no *STEP before this card')
-            call report%lose('*STEP')
-            return
-         end associate
-      end do
-      call need_card(cards, 'STEP', cards%last, report)
-   end subroutine need_step
 
    !> Reports a card that no deck can do without, unless a refused one is in its place.
    subroutine need_card(cards, name, place, report)
