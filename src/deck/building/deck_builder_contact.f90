@@ -235,8 +235,8 @@ contains
             name//' is defined twice')
          call deck%add_name('contact pair', name)
          if (scan(name, '/@') > 0 .or. name == '.' .or. name == '..') call deck%error(place, &
-            'the name of a contact pair, a group of the result file, must not be . or .. or '// &
-            'contain / or @')
+            'the name of a contact pair must not be . or .. or contain / or @: it is a group '// &
+            'of the result file')
       end associate
    end subroutine add_contact
 

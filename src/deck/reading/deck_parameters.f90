@@ -1,7 +1,7 @@
 !> *PARAMETER: names with values, used as <name> in the deck, and --set that overrides them.
 module deck_parameters
    use arithmetic, only: arithmetic_fault_type, evaluate, is_arithmetic
-   use card_fields, only: first_text, without_quotes
+   use card_fields, only: first_text, last_text, without_quotes
    use cards, only: add_note, field_type
    use deck_report, only: deck_report_type
    use deck_source, only: place_type
@@ -43,8 +43,8 @@ contains
       allocate (self%values(0), self%setting_names(0), self%setting_values(0))
       do i = 1, size(settings)
          equals = index(settings(i)%value, '=')
-         name = trim(adjustl(settings(i)%value(:equals - 1)))
-         value = trim(adjustl(settings(i)%value(equals + 1:)))
+         name = without_blanks_around(settings(i)%value(:equals - 1))
+         value = without_blanks_around(settings(i)%value(equals + 1:))
          if (len(name) == 0) then
             call report%error(place_type(), '--set '//settings(i)%value//' is not NAME=VALUE')
          else if (len(value) == 0) then
@@ -198,5 +198,13 @@ contains
          end associate
       end do
    end subroutine check_settings
+
+   !> A text of the command line without the blanks around it, as fields of a deck are.
+   pure function without_blanks_around(string) result(bare)
+      character(*), intent(in) :: string
+      character(:), allocatable :: bare
+
+      bare = string(first_text(string):last_text(string))
+   end function without_blanks_around
 
 end module deck_parameters
