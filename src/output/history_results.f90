@@ -226,20 +226,18 @@ contains
       class(history_results_type), intent(inout) :: self     !! started
       type(hdf5_writer_type), intent(inout) :: file          !! the open file
       integer, intent(in) :: rows(:)                         !! of its sets, in the same order
-      type(string_type), allocatable :: kept(:)
+      type(string_type), allocatable :: groups(:), kept(:)
       integer :: first, h, i, k
 
+      allocate (groups(0))
       do h = 1, size(self%histories)
          call start_group(self%histories(h), file)
          associate (history => self%histories(h))
-            allocate (kept(0))
-            do k = 1, size(history%names)
-               call append_text(kept, history%names(k)%value)
-            end do
+            call append_text(groups, history%group(index(history%group, '/', back=.true.) + 1:))
+            kept = history%names
             call append_text(kept, history%name_of_numbers)
             call append_text(kept, 'point')
             call file%keep_members(history%group, kept)
-            deallocate (kept)
             ! Steps that are new may be the first to ask for it.
             first = 0
             if (h <= size(rows)) first = rows(h)
@@ -249,14 +247,7 @@ contains
          end associate
       end do
       do i = 1, size(above)
-         allocate (kept(0))
-         do h = 1, size(self%histories)
-            associate (group => self%histories(h)%group)
-               call append_text(kept, group(index(group, '/', back=.true.) + 1:))
-            end associate
-         end do
-         if (file%has(trim(above(i)))) call file%keep_members(trim(above(i)), kept)
-         deallocate (kept)
+         if (file%has(trim(above(i)))) call file%keep_members(trim(above(i)), groups)
       end do
    end subroutine go_on
 

@@ -133,10 +133,7 @@ contains
       integer :: errors, j, i, n
       logical :: valid
 
-      n = 0
-      do j = 1, size(deck%card%data)
-         n = n + (size(deck%card%data(j)%fields) + 1)/2
-      end do
+      n = sum([((size(deck%card%data(j)%fields) + 1)/2, j=1, size(deck%card%data))])
       allocate(amplitude%times(n), amplitude%values(n), source=0.0_dp)
       n = 0
       do j = 1, size(deck%card%data)

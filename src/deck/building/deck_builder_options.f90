@@ -5,7 +5,7 @@ module deck_builder_options
    use deck_builder_rigid, only: need_faces
    use deck_context, only: deck_type
    use element_kinds, only: axisymmetric, plane_strain, plane_stress
-   use model, only: refined_region_type, uncertainty_named, uncertainty_words
+   use model, only: refined_region_type, uncertainty_named, uncertainty_words, unit_labels_type
    use steps, only: dof_temperature
    use text, only: read_integer, to_text, to_upper
    use transforms, only: axis_in_plane
@@ -27,11 +27,7 @@ contains
       integer :: k
 
       deck%model%heading = ''
-      deck%model%units%length = ''
-      deck%model%units%stress = ''
-      deck%model%units%power = ''
-      deck%model%units%temperature = ''
-      deck%model%units%time = ''
+      deck%model%units = unit_labels_type('', '', '', '', '')
       deck%model%solver = solver_by_size
       do k = 1, size(deck%cards%keywords)
          call deck%open_card(k)
@@ -110,11 +106,8 @@ contains
             'commas: length, stress, power, temperature, time')
          return
       end if
-      deck%model%units%length = trim(words(1))
-      deck%model%units%stress = trim(words(2))
-      deck%model%units%power = trim(words(3))
-      deck%model%units%temperature = trim(words(4))
-      deck%model%units%time = trim(words(5))
+      deck%model%units = unit_labels_type(trim(words(1)), trim(words(2)), trim(words(3)), &
+         trim(words(4)), trim(words(5)))
    end subroutine build_option_card
 
    !> Reads LEVELS= of *REFINE; 0 after an error.

@@ -272,25 +272,20 @@ contains
    !> integration points: their map is not one to one.
    subroutine check_folds(deck)
       type(deck_type), intent(inout) :: deck
-      integer :: at, e, first, kind, n, node, number_folded
+      integer :: at(size(deck%mesh%element_number)), e, kind, n
 
-      number_folded = 0
-      do e = 1, size(deck%mesh%element_number)
+      do e = 1, size(at)
          kind = deck%mesh%element_kind(e)
          if (deck%order == 1) kind = linear_kind(kind)
          n = element_node_count(kind)
-         at = folded_node(kind, deck%mesh%coordinates(:, deck%mesh%element_nodes(:n, e)))
-         if (at == 0) cycle
-         number_folded = number_folded + 1
-         if (number_folded > 1) cycle
-         first = e
-         node = deck%mesh%node_number(deck%mesh%element_nodes(at, e))
+         at(e) = folded_node(kind, deck%mesh%coordinates(:, deck%mesh%element_nodes(:n, e)))
       end do
-      if (number_folded == 0) return
-      call deck%warning(deck%element_place(first), 'element '//to_text(deck%mesh%element_number( &
-         first))//' is folded at node '//to_text(node)//': its Jacobian is negative near it, '// &
-         'where fields are wrong; move the midside nodes towards the middle of their sides and '// &
-         'make its corners convex'//others(number_folded, '; folded elements: '))
+      e = findloc(at > 0, .true., dim=1)
+      if (e > 0) call deck%warning(deck%element_place(e), 'element '// &
+         to_text(deck%mesh%element_number(e))//' is folded at node '// &
+         to_text(deck%mesh%node_number(deck%mesh%element_nodes(at(e), e)))//': its Jacobian is '// &
+         'negative near it, where fields are wrong; move the midside nodes towards the middle '// &
+         'of their sides and make its corners convex'//others(count(at > 0), '; folded elements: '))
    end subroutine check_folds
 
    !> The node at which an element is folded, as its position in the element; 0 where there is none.
@@ -319,31 +314,27 @@ contains
    !> No side of an element is far shorter than others; corners in one place go by the Jacobian.
    subroutine check_slenderness(deck)
       type(deck_type), intent(inout) :: deck
-      real(dp) :: corners(2, 4), least, lengths(4), ratio
-      integer :: e, n, worst, count_doubtful
+      real(dp) :: corners(2, 4), lengths(4), ratio(size(deck%mesh%element_number))
+      integer :: e, n
 
-      worst = 0
-      count_doubtful = 0
-      least = doubtful
-      do e = 1, size(deck%mesh%element_number)
+      ratio = 1.0_dp
+      do e = 1, size(ratio)
          if (.not. deck%element_valid(e)) cycle
          ! Of corners alone; sides without a length do not count.
          n = element_corner_count(deck%mesh%element_kind(e))
          corners(:, :n) = deck%mesh%coordinates(:, deck%mesh%element_nodes(:n, e))
          lengths(:n) = norm2(cshift(corners(:, :n), 1, dim=2) - corners(:, :n), dim=1)
-         ratio = 1.0_dp
-         if (any(lengths(:n) > 0.0_dp)) ratio = minval(lengths(:n), mask=lengths(:n) > 0.0_dp)/ &
+         if (any(lengths(:n) > 0.0_dp)) ratio(e) = minval(lengths(:n), mask=lengths(:n) > 0.0_dp)/ &
             maxval(lengths(:n))
-         if (ratio < hopeless) call deck%error(deck%element_place(e), said(deck%mesh, e, ratio)// &
-            ', and rounding would spoil the result')
-         if (ratio < hopeless .or. ratio >= doubtful) cycle
-         count_doubtful = count_doubtful + 1
-         if (ratio < least) worst = e
-         least = min(least, ratio)
+         if (ratio(e) < hopeless) call deck%error(deck%element_place(e), said(deck%mesh, e, &
+            ratio(e))//', and rounding would spoil the result')
       end do
-      if (worst > 0) call deck%warning(deck%element_place(worst), said(deck%mesh, worst, least)// &
-         ', and pressures there are accurate to '//to_text(epsilon(1.0_dp)/least**2)//' only '// &
-         '(number of such elements: '//to_text(count_doubtful)//')')
+      associate (is_doubtful => ratio >= hopeless .and. ratio < doubtful)
+         e = minloc(ratio, dim=1, mask=is_doubtful)
+         if (e > 0) call deck%warning(deck%element_place(e), said(deck%mesh, e, ratio(e))// &
+            ', and pressures there are accurate to '//to_text(epsilon(1.0_dp)/ratio(e)**2)// &
+            ' only (number of such elements: '//to_text(count(is_doubtful))//')')
+      end associate
    end subroutine check_slenderness
 
    !> The part of a message that names an element and the ratio of its sides.

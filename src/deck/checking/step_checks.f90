@@ -194,36 +194,34 @@ contains
    subroutine check_dilatation(deck)
       type(deck_type), intent(inout) :: deck
       type(place_type) :: place
+      character(:), allocatable :: fault
       integer :: n
 
       n = findloc(deck%model%steps%dilates, .true., dim=1)
       if (n == 0) return
       place = deck%analysis_place(n)
-      if (.not. deck%model%constants%has_absolute_zero) then
-         call deck%error(place, 'DILATATION needs absolute temperatures; give *PHYSICAL '// &
-            'CONSTANTS, ABSOLUTE ZERO=')
-         return
-      end if
-      if (any(has_law(deck%model%materials))) then
-         call deck%error(place, 'DILATATION is refused with *PLASTIC, *CREEP and *ANNEAL '// &
-            'TEMPERATURE: the heat of strains is that of elastic ones')
-         return
-      end if
-      if (any(follows_temperature(deck%model%materials(deck%model%sections%material), &
-         of_elasticity) .or. follows_temperature(deck%model%materials( &
-         deck%model%sections%material), of_expansion))) then
-         call deck%error(place, 'DILATATION needs *ELASTIC and *EXPANSION of one row: with '// &
-            'tables over temperature the heat of strains is another one')
-         return
-      end if
+      fault = ''
+      associate (used => deck%model%materials(deck%model%sections%material))
+         if (any(follows_temperature(used, of_elasticity) .or. follows_temperature(used, &
+            of_expansion))) fault = 'needs *ELASTIC and *EXPANSION of one row: with tables over '// &
+            'temperature the heat of strains is another one'
+      end associate
+      if (any(has_law(deck%model%materials))) fault = 'is refused with *PLASTIC, *CREEP and '// &
+         '*ANNEAL TEMPERATURE: the heat of strains is that of elastic ones'
+      if (.not. deck%model%constants%has_absolute_zero) fault = 'needs absolute temperatures; '// &
+         'give *PHYSICAL CONSTANTS, ABSOLUTE ZERO='
       n = minloc(deck%model%initial_temperature, dim=1, mask=deck%mesh%node_body > 0)
-      if (deck%model%initial_temperature(n) > deck%model%constants%absolute_zero) then
+      associate (zero => deck%model%constants%absolute_zero, coldest => &
+         deck%model%initial_temperature(n))
+         if (fault == '' .and. coldest <= zero) fault = 'needs temperatures above absolute '// &
+            'zero, '//to_text(zero)//', but node '//to_text(deck%mesh%node_number(n))// &
+            ' starts at '//to_text(coldest)
+      end associate
+      if (fault == '') then
          call check_strained_capacity(place, deck)
-         return
+      else
+         call deck%error(place, 'DILATATION '//fault)
       end if
-      call deck%error(place, 'DILATATION needs temperatures above absolute zero, '//to_text( &
-         deck%model%constants%absolute_zero)//', but node '//to_text(deck%mesh%node_number(n))// &
-         ' starts at '//to_text(deck%model%initial_temperature(n)))
    end subroutine check_dilatation
 
    !> The capacity at constant strain, rho c_p - T0 beta:alpha, must be positive, or heat would make
