@@ -398,15 +398,13 @@ contains
       logical, intent(inout) :: valid                    !! becomes false after an error
       integer :: i
 
-      do i = 1, size(elements)
-         associate (sides => element_corner_count(deck%mesh%element_kind(elements(i))))
-            if (face <= sides .or. .not. deck%element_valid(elements(i))) cycle
-            call deck%error(data%place(2), 'element '// &
-               to_text(deck%mesh%element_number(elements(i)))//' has '//to_text(sides)//' sides')
-         end associate
-         valid = .false.
-         return
-      end do
+      associate (sides => element_corner_count(deck%mesh%element_kind(elements)))
+         i = findloc(face > sides .and. deck%element_valid(elements), .true., dim=1)
+         if (i == 0) return
+         call deck%error(data%place(2), 'element '//to_text(deck%mesh%element_number(elements( &
+            i)))//' has '//to_text(sides(i))//' sides')
+      end associate
+      valid = .false.
    end subroutine check_face
 
    subroutine read_face(data, deck, face, valid)

@@ -169,16 +169,14 @@ contains
       first = findloc(deck%model%steps%is_transient, .true., dim=1)
       if (first == 0) return
       is_used = [(any(deck%model%sections%material == m), m=1, size(is_used))]
-      do m = 1, size(is_used)
-         associate (material => deck%model%materials(m))
-            if (.not. is_used(m) .or. .not. material%has(of_specific_heat)) cycle
-            if (material%has(of_density)) cycle
-            call deck%missing(deck%analysis_place(first), 'material '//material%name//' has '// &
-               '*SPECIFIC HEAT, but no *DENSITY: its heat capacity is the product of both', &
-               '*DENSITY')
-            return
-         end associate
-      end do
+      m = findloc(is_used .and. deck%model%materials%has(of_specific_heat) .and. .not. &
+         deck%model%materials%has(of_density), .true., dim=1)
+      if (m > 0) then
+         call deck%missing(deck%analysis_place(first), 'material '//deck%model%materials(m)%name// &
+            ' has *SPECIFIC HEAT, but no *DENSITY: its heat capacity is the product of both', &
+            '*DENSITY')
+         return
+      end if
       if (.not. any(is_used .and. heat_capacity(deck%model%materials) > 0.0_dp)) call &
          deck%missing(deck%analysis_place(first), 'without STEADY STATE the bodies store heat, '// &
          'but no material of theirs has *SPECIFIC HEAT and *DENSITY; give them, or STEADY STATE', &
@@ -203,8 +201,8 @@ contains
       fault = ''
       associate (used => deck%model%materials(deck%model%sections%material))
          if (any(follows_temperature(used, of_elasticity) .or. follows_temperature(used, &
-            of_expansion))) fault = 'needs *ELASTIC and *EXPANSION of one row: with tables over '// &
-            'temperature the heat of strains is another one'
+            of_expansion))) fault = 'needs *ELASTIC and *EXPANSION of one row: with tables '// &
+            'over temperature the heat of strains is another one'
       end associate
       if (any(has_law(deck%model%materials))) fault = 'is refused with *PLASTIC, *CREEP and '// &
          '*ANNEAL TEMPERATURE: the heat of strains is that of elastic ones'

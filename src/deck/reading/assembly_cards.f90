@@ -10,8 +10,9 @@ module assembly_cards
    use deck_report, only: deck_report_type
    use given_cards, only: exact_text, motion_type, read_motion
    use kinds, only: dp, long
+   use name_index, only: name_index_type
    use spelling, only: nearest_known
-   use text, only: append, read_integer, read_real, string_type, to_text, to_upper
+   use text, only: read_integer, read_real, to_text, to_upper
    implicit none
    private
    public :: flatten_cards
@@ -33,9 +34,10 @@ module assembly_cards
    type :: reading_type
       integer :: level = at_model
       integer :: opened = 0                              !! keyword card that opened it
-      type(string_type), allocatable :: parts(:)         !! names of the parts so far, upper case
+      type(name_index_type) :: parts                     !! those so far
       integer, allocatable :: first(:), last(:)          !! (parts) keyword cards within each
-      type(instance_type), allocatable :: instances(:)   !! those so far
+      type(name_index_type) :: names                     !! of the instances so far
+      type(instance_type), allocatable :: instances(:)   !! the same
       integer :: begun = 1                               !! first one of the last *INSTANCE
       type(instance_type) :: assembly                    !! cards of the assembly itself
       character(:), allocatable :: prefix                !! the name of the assembly and a dot
@@ -56,7 +58,7 @@ contains
 
       if (.not. any([(level_of(cards%keywords(k)%name) /= at_model .or. &
          cards%keywords(k)%has('INSTANCE'), k=1, size(cards%keywords))])) return
-      allocate (open%parts(0), open%first(0), open%last(0), open%instances(0))
+      allocate (open%first(0), open%last(0), open%instances(0))
       open%assembly%name = ''
       open%prefix = '.'
       n = 0
@@ -161,7 +163,7 @@ contains
             open%opened = k
             if (level == at_part) then
                call need_parameter(card, 'NAME', report, name)
-               call append(open%parts, name)
+               call open%parts%add(name)
                open%first = [open%first, k + 1]
                open%last = [open%last, k]
             else if (level == at_instance) then
@@ -217,24 +219,23 @@ contains
       integer :: i, k
 
       instance%offset = size(open%instances)*open%step
-      do i = 1, size(open%instances)
-         if (open%instances(i)%name == instance%name) call report%error(card%place_of('NAME'), &
-            'instance '//instance%name//' is defined twice')
-      end do
+      if (open%names%find(instance%name) > 0) call report%error(card%place_of('NAME'), &
+         'instance '//instance%name//' is defined twice')
+      call open%names%add(instance%name)
       open%instances = [open%instances, instance]
       if (instance%offset > 0) call add_note(all%notes, '*INSTANCE '//instance%name//': '// &
          'numbers of its nodes and elements are those of the part plus '//to_text(instance%offset))
       call need_parameter(card, 'PART', report, part)
       if (len(part) == 0) return
-      do i = 1, size(open%parts)
-         if (open%parts(i)%value /= part) cycle
-         do k = open%first(i), open%last(i)
-            call copy_card(cards%keywords(k), instance, all)
-         end do
+      i = open%parts%find(part)
+      if (i == 0) then
+         call report%missing(card%place_of('PART'), 'unknown part '//part// &
+            nearest_known(part, open%parts%known()), 'part', part)
          return
+      end if
+      do k = open%first(i), open%last(i)
+         call copy_card(cards%keywords(k), instance, all)
       end do
-      call report%missing(card%place_of('PART'), 'unknown part '//part// &
-         nearest_known(part, open%parts), 'part', part)
    end subroutine open_instance
 
    !> Takes a card of the assembly or of the model as it is, but for INSTANCE= of its members,
@@ -245,7 +246,6 @@ contains
       type(cards_type), intent(inout) :: all
       type(deck_report_type), intent(inout) :: report
       type(instance_type) :: owner
-      type(string_type), allocatable :: names(:)
       integer :: first, i, k
 
       first = all%keyword_count + 1
@@ -254,16 +254,12 @@ contains
       if (card%has('INSTANCE')) then
          owner%name = to_upper(card%text('INSTANCE'))
          owner%offset = 0
-         allocate (names(0))
-         do i = 1, size(open%instances)
-            call append(names, open%instances(i)%name)
-            if (open%instances(i)%name == owner%name) exit
-         end do
-         if (i <= size(open%instances)) then
+         i = open%names%find(owner%name)
+         if (i > 0) then
             owner = open%instances(i)
          else
             call report%missing(card%place_of('INSTANCE'), 'unknown instance '//owner%name// &
-               nearest_known(owner%name, names), 'instance', owner%name)
+               nearest_known(owner%name, open%names%known()), 'instance', owner%name)
          end if
       end if
       call copy_card(card, owner, all)
@@ -413,13 +409,10 @@ contains
       dot = index(text, '.', back=.true.)
       if (dot < 2 .or. dot == len(text)) return
       if (verify(text(dot + 1:), '0123456789') > 0) return
-      do i = 1, size(open%instances)
-         if (len(open%instances(i)%name) /= dot - 1) cycle
-         if (open%instances(i)%name /= to_upper(text(:dot - 1))) cycle
-         call read_integer(text(dot + 1:), number, is_number)
-         if (is_number) text = to_text(number + open%instances(i)%offset)
-         return
-      end do
+      i = open%names%find(text(:dot - 1))
+      if (i == 0) return
+      call read_integer(text(dot + 1:), number, is_number)
+      if (is_number) text = to_text(number + open%instances(i)%offset)
    end subroutine members_of_instance
 
 end module assembly_cards

@@ -187,9 +187,7 @@ contains
       integer :: i
 
       if (allocated(notes)) then
-         do i = 1, size(notes)
-            if (notes(i)%value == line) return
-         end do
+         if (any([(notes(i)%value == line, i=1, size(notes))])) return
       end if
       call append(notes, line)
    end subroutine add_note

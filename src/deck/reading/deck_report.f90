@@ -168,10 +168,8 @@ contains
       if (present(noun)) lost%noun = to_upper(noun)
       if (present(name)) lost%name = to_upper(name)
       if (.not. allocated(self%lost)) allocate (self%lost(0))
-      do i = 1, size(self%lost)
-         if (self%lost(i)%noun == lost%noun .and. self%lost(i)%name == lost%name) return
-      end do
-      self%lost = [self%lost, lost]
+      if (all([(self%lost(i)%noun /= lost%noun .or. self%lost(i)%name /= lost%name, i=1, &
+         size(self%lost))])) self%lost = [self%lost, lost]
    end subroutine lose
 
    !> Whether a reported error may hide the definition of a name; without a name: of something of
