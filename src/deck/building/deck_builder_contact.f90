@@ -93,8 +93,7 @@ contains
                ' is meant by both names; a surface cannot be in contact with itself')
             return
          end if
-         call need_faces(data%place(merge(1, 2, i <= size(slaves))), 'name the surface of a '// &
-            'rigid body in full, and each slave on a card of its own', deck, chosen)
+         call need_faces(data%place(merge(1, 2, i <= size(slaves))), deck, chosen)
          if (chosen == 0) return
       end do
       allocate (left_out(0))
@@ -191,17 +190,14 @@ contains
       type(data_card_type), intent(in) :: data
       type(deck_type), intent(inout) :: deck
       type(contact_definition_type), intent(inout) :: faces
-      character(*), parameter :: held = 'let it be the master, and the face of the body the slave'
-      character(*), parameter :: tied = 'nodes that it holds are TIE NSET= of *RIGID BODY        '
 
       call deck%need_item(data, 1, 'surface', 'slave surface', faces%slave)
       call deck%need_item(data, 2, 'surface', 'master surface', faces%master)
       call check_extra(data, 2, 'slave surface, master surface', deck)
       if (faces%slave > 0 .and. faces%slave == faces%master) call deck%error(data%place(2), &
-         'a surface cannot be '// &
-         trim(merge('tied to itself           ', 'in contact with itself   ', faces%is_tied)))
-      call need_faces(data%place(1), trim(merge(tied, held, faces%is_tied)), deck, faces%slave)
-      if (faces%is_tied) call need_faces(data%place(2), trim(tied), deck, faces%master)
+         'a surface cannot be in contact with itself')
+      call need_faces(data%place(1), deck, faces%slave)
+      if (faces%is_tied) call need_faces(data%place(2), deck, faces%master)
       if (deck%card%has('NAME')) return
       if (size(data%fields) > 0) faces%name = data%fields(1)%text
       if (faces%is_tied) call deck%note('*'//deck%card%name//' without NAME=: '//faces%name// &

@@ -57,7 +57,7 @@ contains
       type(deck_type), intent(inout) :: deck               !! receives the requests
       type(label_type) :: load
       type(request_type) :: film
-      character(:), allocatable :: advice, label, names, target, what
+      character(:), allocatable :: label, names, target, what
       real(dp) :: values(9)
       integer :: surface
       logical :: known, of_surfaces, valid
@@ -67,9 +67,7 @@ contains
       if (of_surfaces) then
          target = 'surface'
          call deck%need_item(data, 1, 'surface', target, surface)
-         advice = 'prescribe the temperature of its reference node'
-         if (keyword == 'DSLOAD') advice = 'load its reference node by *CLOAD'
-         call need_faces(data%place(1), advice, deck, surface)
+         call need_faces(data%place(1), deck, surface)
          known = surface > 0
       else
          target = 'element or set'

@@ -202,8 +202,7 @@ contains
             call build_rigid_body(deck, deck%model%couplings(n))
          case ('COUPLING')
             call deck%need_named('SURFACE', 'surface', deck%model%couplings(n)%surface)
-            call need_faces(deck%card%place_of('SURFACE'), 'it follows the reference node of '// &
-               'its *RIGID BODY', deck, deck%model%couplings(n)%surface)
+            call need_faces(deck%card%place_of('SURFACE'), deck, deck%model%couplings(n)%surface)
             if (.not. is_keyword(deck%cards, k + 1, 'KINEMATIC')) call deck%error(deck%card%place, &
                '*KINEMATIC is missing: it must directly follow *COUPLING and name the degrees '// &
                'of freedom')
@@ -318,8 +317,7 @@ contains
       section%title = '*PRE-TENSION SECTION, '//deck%source%words_of(deck%card%place)
       call find_reference('NODE', deck, section%reference)
       call deck%need_named('SURFACE', 'surface', section%surface)
-      call need_faces(deck%card%place_of('SURFACE'), 'a section lies between elements of a body', &
-         deck, section%surface)
+      call need_faces(deck%card%place_of('SURFACE'), deck, section%surface)
       valid = section%reference > 0 .and. section%surface > 0 .and. all(deck%element_valid)
       if (valid) valid = size(deck%mesh%surfaces(section%surface)%faces) > 0
       if (valid) section%normal = section_normal(section%surface, deck%mesh)

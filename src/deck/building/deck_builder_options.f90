@@ -199,8 +199,7 @@ contains
                'not both; give a card for each')
          else if (deck%card%has('SURFACE')) then
             call deck%need_named('SURFACE', 'surface', surface)
-            call need_faces(deck%card%place_of('SURFACE'), 'name the face that touches it', deck, &
-               surface)
+            call need_faces(deck%card%place_of('SURFACE'), deck, surface)
             region%surfaces = [surface]
          else
             call deck%need_element_set(region%set)

@@ -288,16 +288,15 @@ contains
    end subroutine build_rigid_body
 
    !> Refuses a rigid surface where faces of elements are needed.
-   subroutine need_faces(place, advice, deck, surface)
+   subroutine need_faces(place, deck, surface)
       type(place_type), intent(in) :: place                !! where it is named
-      character(*), intent(in) :: advice                   !! what to name in its place
       type(deck_type), intent(inout) :: deck
       integer, intent(inout) :: surface                    !! 0 for none, and after an error
 
       if (surface == 0) return
       if (.not. allocated(deck%mesh%surfaces(surface)%drawing)) return
       call deck%error(place, 'surface '//deck%mesh%surfaces(surface)%name//' is rigid: it has '// &
-         'no faces; '//advice)
+         'no faces; name its reference node, or make it the master of a *CONTACT PAIR')
       surface = 0
    end subroutine need_faces
 

@@ -180,7 +180,7 @@ contains
          call found%add([deck%line_nodes(:, deck%line_sets(set)%members)])
       end if
       call deck%take_named('SURFACE', 'surface', surface)
-      call need_faces(deck%card%place_of('SURFACE'), 'name its reference node', deck, surface)
+      call need_faces(deck%card%place_of('SURFACE'), deck, surface)
       if (surface > 0) then
          associate (faces => deck%mesh%surfaces(surface)%faces)
             do i = 1, size(faces, 2)
