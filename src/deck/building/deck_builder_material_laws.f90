@@ -73,9 +73,9 @@ contains
       call take_parameter(deck%card, 'NUMBER BACKSTRESSES', deck, surfaces, '>=1')
       if (surfaces > 1) call deck%error(deck%card%place_of('NUMBER BACKSTRESSES'), 'NUMBER '// &
          'BACKSTRESSES='//to_text(surfaces)//' is refused: a material has one back stress')
-      if (hardening == 'COMBINED' .neqv. data_type == 'PARAMETERS') &
-         call deck%error(deck%card%place_of('DATA TYPE'), 'HARDENING=COMBINED and DATA '// &
-         'TYPE=PARAMETERS go together: yield stress, C and gamma of the back stress')
+      if (hardening == 'COMBINED' .neqv. data_type == 'PARAMETERS') call deck%error( &
+         deck%card%place_of('DATA TYPE'), 'HARDENING=COMBINED and DATA TYPE=PARAMETERS go '// &
+         'together: yield stress, C and gamma of the back stress')
       if (deck%error_count() > errors) return
       associate (law => material%law%hardening)
          if (allocated(law%back)) deallocate (law%back)
