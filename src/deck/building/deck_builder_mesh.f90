@@ -8,7 +8,7 @@ module deck_builder_mesh
    use deck_reader, only: keyword_of
    use deck_source, only: place_type
    use deck_structure, only: cards_of, data_count
-   use element_kinds, only: element_corner_count, element_node_count, generalized_strain, &
+   use element_kinds, only: element_node_count, generalized_strain, &
       plane_strain, plane_stress, quad8
    use element_types, only: drawn_line, line_kind, line_node_count, take_element_type
    use kinds, only: dp
@@ -252,8 +252,7 @@ contains
          deck%line_kind(n) = line_kind(name)
          deck%line_place(n) = deck%card%data(j)%place(1)
          call read_number(deck%card%data(j), 'element', deck, deck%line_number(n))
-         call read_nodes(deck%card%data(j), 'line, '//to_text(line_node_count(name))//' nodes', &
-            deck%card%place, deck, deck%line_nodes(:line_node_count(name), n), valid)
+         call read_nodes(deck%card%data(j), deck, deck%line_nodes(:line_node_count(name), n), valid)
       end do
    end subroutine add_lines
 
@@ -261,8 +260,8 @@ contains
    subroutine add_elements(deck, n)
       type(deck_type), intent(inout) :: deck
       integer, intent(inout) :: n        ! elements so far
-      character(:), allocatable :: layout, message, name, note
-      integer :: corners, j, kind, midsides, plane
+      character(:), allocatable :: message, name, note
+      integer :: j, kind, plane
 
       call need_parameter(deck%card, 'TYPE', deck, name)
       call take_element_type(name, kind, plane, message, note)
@@ -271,10 +270,6 @@ contains
       if (plane == plane_stress .and. deck%plane == plane_by_element) call warn_of_gmsh( &
          deck%card%place_of('TYPE'), deck)
       if (deck%plane /= plane_by_element .and. plane /= generalized_strain) plane = deck%plane
-      corners = element_corner_count(kind)
-      midsides = element_node_count(kind) - corners
-      layout = 'element, '//to_text(corners)//' corners'
-      if (midsides > 0) layout = layout//', '//to_text(midsides)//' midside nodes'
       do j = 1, size(deck%card%data)
          n = n + 1
          deck%element_place(n) = deck%card%data(j)%place(1)
@@ -282,8 +277,8 @@ contains
          if (len(message) > 0) cycle
          deck%mesh%element_kind(n) = kind
          deck%mesh%element_plane(n) = plane
-         call read_nodes(deck%card%data(j), layout, deck%card%place, deck, &
-            deck%mesh%element_nodes(:corners + midsides, n), deck%element_valid(n))
+         call read_nodes(deck%card%data(j), deck, &
+            deck%mesh%element_nodes(:element_node_count(kind), n), deck%element_valid(n))
       end do
    end subroutine add_elements
 
@@ -301,13 +296,9 @@ contains
          'is meant by *OPTIONS, PLANE=STRAIN, STRESS or AXISYMMETRIC', 'gmsh')
    end subroutine warn_of_gmsh
 
-   !> Indexes of the nodes of an element or a line; one that does not exist is an error, and 0. Of
-   !> the elements of a keyword card that have too many fields or too few, the first is reported:
-   !> its TYPE= may be wrong.
-   subroutine read_nodes(data, layout, keyword, deck, nodes, valid)
+   !> Indexes of the nodes of an element or a line; one that does not exist is an error, and 0.
+   subroutine read_nodes(data, deck, nodes, valid)
       type(data_card_type), intent(in) :: data
-      character(*), intent(in) :: layout               ! what the card is
-      type(place_type), intent(in) :: keyword          ! where the *ELEMENT card is
       type(deck_type), intent(inout) :: deck
       integer, intent(inout) :: nodes(:)               ! 0 before
       logical, intent(out) :: valid                    ! whether the places of all are known
@@ -316,13 +307,9 @@ contains
 
       fields = size(data%fields) - 1
       valid = fields == size(nodes)
-      if (fields > size(nodes)) then
-         call deck%error(data%place(size(nodes) + 2), 'extra field; the card is '//layout, &
-            'extra fields of '//to_text(keyword%image))
-      else if (.not. (valid .or. data%is_undefined(fields + 1))) then
-         call deck%error(data%place(fields + 2), 'missing field: node '//to_text(fields + 1), &
-            'missing fields of '//to_text(keyword%image))
-      end if
+      if (.not. (valid .or. data%is_undefined(fields + 1))) call deck%error( &
+         data%place(min(fields, size(nodes)) + 2), 'the element has '//to_text(fields)// &
+         ' nodes, but its TYPE= has '//to_text(size(nodes)))
       do q = 1, min(size(nodes), fields)
          is_number = .true.
          call read_field(data, q + 1, node_words(q), deck, number, is_number)
