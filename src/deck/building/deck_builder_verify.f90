@@ -326,13 +326,10 @@ contains
             allocate (deck%model%accuracy%targets(0))
             if (size(deck%model%contacts) == 0) call deck%missing(deck%card%place, 'the deck '// &
                'has no *CONTACT PAIR: there is no quantity that *ACCURACY could name')
-            if (any(deck%model%steps%continuation%is_on)) then
-               call deck%error(deck%card%place, '*ACCURACY needs numerical uncertainties, '// &
-                  'which branches of *CONTINUATION do not have; refine by *REFINE')
-            else if (deck%model%uncertainty == uncertainty_no) then
-               call deck%error(deck%card%place, '*ACCURACY needs numerical uncertainties; '// &
-                  'leave ERRORS=NO out of *OPTIONS')
-            end if
+            if (any(deck%model%steps%continuation%is_on) .or. &
+               deck%model%uncertainty == uncertainty_no) call deck%error(deck%card%place, &
+               '*ACCURACY needs numerical uncertainties, which *CONTINUATION and ERRORS=NO do '// &
+               'not have')
          end if
          call take_parameter(deck%card, 'ROUNDS', deck, deck%model%accuracy%rounds, '>=1')
          do j = 1, size(deck%card%data)
