@@ -6,15 +6,14 @@ module deck_builder_rigid
    use deck_context, only: deck_type
    use deck_source, only: place_type
    use drawn_lines, only: drawn_line_type, sharpest_corner
-   use element_types, only: rigid_line
    use equations, only: coupling_type
    use kinds, only: dp
    use mesh, only: surface_type
    use text, only: read_integer, to_text, to_upper
    implicit none
    private
-   public :: build_drawing, build_line_surface, is_rigid_side, lines_of, build_rigid_body, &
-      need_faces, check_rigid_masters
+   public :: build_drawing, build_line_surface, lines_of, build_rigid_body, need_faces, &
+      check_rigid_masters
 
    real(dp), parameter :: pi = acos(-1.0_dp)
    real(dp), parameter :: same_radius = 1.0e-3_dp   !! part of the radius; decks give few digits
@@ -138,17 +137,6 @@ contains
       line%is_arc = line%is_arc(order)
       if (allocated(line%line)) line%line = line%line(order)
    end subroutine turn_round
-
-   !> Whether a data card of a *SURFACE names sides of rigid line elements.
-   pure logical function is_rigid_side(data, deck)
-      type(data_card_type), intent(in) :: data
-      type(deck_type), intent(in) :: deck
-      integer, allocatable :: lines(:)
-
-      lines = lines_of(data%text(1), deck)
-      is_rigid_side = size(lines) > 0
-      if (is_rigid_side) is_rigid_side = all(deck%line_kind(lines) == rigid_line)
-   end function is_rigid_side
 
    !> The lines of a set, or the one of a number; none where there is no such set or line.
    pure function lines_of(name, deck) result(lines)

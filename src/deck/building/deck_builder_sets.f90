@@ -4,12 +4,12 @@ module deck_builder_sets
       read_row
    use cards, only: data_card_type, keyword_card_type
    use deck_builder_mesh, only: is_line_card
-   use deck_builder_rigid, only: build_drawing, build_line_surface, is_rigid_side, lines_of, &
-      need_faces
+   use deck_builder_rigid, only: build_drawing, build_line_surface, lines_of, need_faces
    use deck_context, only: deck_type, item_index_type, place_list_type
    use deck_structure, only: cards_of
    use element_kinds, only: element_corner_count, side_nodes
    use element_sides, only: element_sides_type, find_sides
+   use element_types, only: rigid_line
    use kinds, only: dp
    use load_requests, only: target_type
    use mesh, only: set_type, surface_type
@@ -272,10 +272,10 @@ contains
       if (kind == 'SEGMENTS') then
          call build_drawing(deck, surface)
       else if (size(deck%card%data) > 0) then
-         if (is_rigid_side(deck%card%data(1), deck)) then
-            call build_line_surface(deck, surface)
-            kind = 'RIGID'
-         end if
+         associate (lines => lines_of(deck%card%data(1)%text(1), deck))
+            if (size(lines) > 0 .and. all(deck%line_kind(lines) == rigid_line)) kind = 'RIGID'
+         end associate
+         if (kind == 'RIGID') call build_line_surface(deck, surface)
       end if
       if (kind /= 'ELEMENT') then
          if (.not. allocated(surface%drawing)) call deck%lose('surface')

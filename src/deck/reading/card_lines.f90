@@ -47,6 +47,8 @@ contains
       character(*), intent(in) :: line                     !! card image
       integer, intent(in) :: image                         !! its running number
       type(field_type), allocatable :: fields(:)
+      character(:), allocatable :: words
+      integer :: position
       logical :: is_text, is_variable, title
 
       if (last_text(line) == 0) return
@@ -66,8 +68,13 @@ contains
             'comments of other programs')
          return
       end if
-      if (is_keyword(line) .or. .not. (is_text .or. self%skips_data)) call suspect_look_alike( &
-         self, line, image)
+      if (is_keyword(line) .or. .not. (is_text .or. self%skips_data)) then
+         call find_look_alike(line, position, words)
+         if (position > 0) then
+            if (index(to_upper(line(:position)), 'SOURCE=') == 0) call self%report%possible_cause( &
+               place_type(image, position), 'this character is '//words)
+         end if
+      end if
       if (is_keyword(line) .or. (.not. is_variable .and. lacks_star(line, title, self%cards))) then
          call self%finish()
          call split_fields(line, image, self%report, fields)
@@ -92,20 +99,6 @@ contains
       end if
       call take_data_line(self, line, image)
    end subroutine take_line
-
-   !> Warns of the first character of a line that looks like another one, but not in SOURCE=.
-   subroutine suspect_look_alike(self, line, image)
-      class(card_lines_type), intent(inout) :: self
-      character(*), intent(in) :: line
-      integer, intent(in) :: image
-      character(:), allocatable :: words
-      integer :: position
-
-      call find_look_alike(line, position, words)
-      if (position == 0) return
-      if (index(to_upper(line(:position)), 'SOURCE=') > 0) return
-      call self%report%possible_cause(place_type(image, position), 'this character is '//words)
-   end subroutine suspect_look_alike
 
    !> Ends a card that waits for its continuation, which a keyword card need not have.
    subroutine finish(self)
