@@ -53,8 +53,8 @@ contains
                associate (rings => deck%mesh%element_plane(request%members( &
                   deck%mesh%element_sets)) == axisymmetric)
                   if (any(rings .neqv. request%component == centrifugal_round)) call deck%error( &
-                     request%place, 'axisymmetric elements turn round the y axis, point 0, 0, 0, '// &
-                     'direction 0, 1, 0, others round an axis along z, direction 0, 0, 1')
+                     request%place, 'axisymmetric elements turn round the y axis, point 0, 0, '// &
+                     '0, direction 0, 1, 0, others round an axis along z, direction 0, 0, 1')
                end associate
             case (load_temperature)
                if (deck%analyses_sound .and. deck%model%steps(request%step)%analysis /= &

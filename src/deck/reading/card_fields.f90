@@ -56,8 +56,8 @@ contains
       last_text = verify(line, blanks, back=.true.)
    end function last_text
 
-   !> Splits a line at its commas, but for those inside quotes. Quotes stay in the fields; one that is
-   !> not closed is an error.
+   !> Splits a line at its commas, but for those inside quotes. Quotes stay in the fields; one that
+   !> is not closed is an error.
    subroutine split_fields(line, image, report, fields)
       character(*), intent(in) :: line                            !! card image
       integer, intent(in) :: image                                !! its running number
