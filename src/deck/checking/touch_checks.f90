@@ -342,8 +342,6 @@ contains
       type(element_sides_type), intent(in) :: sides   !! those of all elements
       real(dp) :: box(4, deck%mesh%body_count)        ! lowest x and y, highest x and y
       logical :: is_told(deck%mesh%body_count)
-      !> Elements of every body, and its free sides
-      integer, allocatable :: elements(:), first(:), first_side(:), outline(:)
       integer :: inner, n, outer
 
       box(:2, :) = huge(1.0_dp)
@@ -361,13 +359,7 @@ contains
             associate (low => box(:2, :), high => box(3:, :))
                if (any(low(:, inner) < low(:, outer) .or. high(:, inner) > high(:, outer))) cycle
             end associate
-            if (.not. allocated(first)) then
-               call sort_by_body(deck%mesh%element_body, first, elements)
-               call sort_by_body(merge(deck%mesh%element_body(sides%elements(1, :sides%count)), 0, &
-                  sides%elements(2, :sides%count) == 0), first_side, outline)
-            end if
-            if (.not. lies_inside(deck%mesh, elements(first(inner):first(inner + 1) - 1), &
-               sides%ends(:, outline(first_side(outer):first_side(outer + 1) - 1)))) cycle
+            if (.not. lies_inside(deck%mesh, sides, inner, outer)) cycle
             is_told(inner) = .true.
             call deck%warning(deck%node_place(findloc(deck%mesh%node_body, inner, dim=1)), &
                body_name(deck%model, inner)//' lies wholly inside '//body_name(deck%model, &
@@ -377,32 +369,27 @@ contains
       end do
    end subroutine check_overlaps
 
-   !> The members of every body, those of body b from first(b) on.
-   pure subroutine sort_by_body(body, first, members)
-      integer, intent(in) :: body(:)                 ! of each, 0 for none
-      integer, allocatable, intent(out) :: first(:), members(:)
-
-      call invert_lists(reshape(body, [1, size(body)]), min(body, 1), maxval(body), first, members)
-   end subroutine sort_by_body
-
    !> Whether elements of one body, evenly chosen, are within another with all their corners: these
    !> are drawn in a little, as outlines may coincide.
-   pure logical function lies_inside(mesh, elements, outline)
+   pure logical function lies_inside(mesh, sides, inner, outer)
       type(mesh_type), intent(in) :: mesh
-      integer, intent(in) :: elements(:)     ! of the one
-      integer, intent(in) :: outline(:, :)   ! (3, sides) of the other: corner, midside or 0, corner
-      integer, allocatable :: corners(:)
+      type(element_sides_type), intent(in) :: sides
+      integer, intent(in) :: inner, outer    ! bodies
+      integer, allocatable :: corners(:), elements(:), outline(:)
       real(dp) :: middle(2)
       integer :: i, k
 
+      elements = pack([(i, i=1, size(mesh%element_body))], mesh%element_body == inner)
+      outline = pack([(i, i=1, sides%count)], sides%elements(2, :sides%count) == 0 .and. &
+         mesh%element_body(sides%elements(1, :sides%count)) == outer)
       lies_inside = .false.
       do i = 1, size(elements), size(elements)/most_looked_at + 1
          corners = mesh%element_nodes(:element_corner_count(mesh%element_kind(elements(i))), &
             elements(i))
          middle = sum(mesh%coordinates(:, corners), dim=2)/size(corners)
          do k = 1, size(corners)
-            if (.not. is_within(mesh, outline, middle + drawn_in*(mesh%coordinates(:, &
-               corners(k)) - middle))) return
+            if (.not. is_within(mesh, sides%ends(:, outline), middle + drawn_in* &
+               (mesh%coordinates(:, corners(k)) - middle))) return
          end do
       end do
       lies_inside = .true.
