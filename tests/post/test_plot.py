@@ -810,7 +810,7 @@ def test_no_line_below_the_fields_ends_in_a_semicolon(kept, result, card, scale)
     for quantity in ("yy", "mode_temperature"):
         (figure,) = kept("fields", result, "--quantity", quantity, "--scale", scale)
         lines = figure.get_supxlabel().splitlines()
-        assert lines[0].startswith("temperature of node set TOP 900")
+        assert lines[0].startswith("temperature of node set TOP = 900")
         assert not any(line.rstrip().endswith(";") for line in lines)
 
 
@@ -849,6 +849,22 @@ def test_a_range_inside_the_contact_is_not_called_open_and_names_no_edge(kept, r
     assert figure.axes[-1].get_xlabel().endswith("the part not shown\nhas edges of contact")
     names = [text.get_text() for text in figure.legends[0].get_texts()]
     assert "edge of contact" not in names
+
+
+def test_a_name_beside_its_narrow_zone_is_left_out_where_it_would_cover_marks(laid_out, tmp_path):
+    """One increment sticks: of few contact points its name has room between marks, of many it has none."""
+    for columns, is_named in ((3, True), (40, False)):
+        path = tmp_path / f"dense{columns}.vtkhdf"
+        write_result(path, loads=tuple(np.linspace(300.0, 900.0, 60)), columns=columns)
+        with h5py.File(path, "r+") as file:
+            contact = file["contact/CYLINDER"]
+            contact["status"][...] = 1
+            contact["status"][30] = 2
+            for key in ("edge_contact", "edge_stick", "edges_contact", "edges_stick"):
+                contact[key][...] = np.nan
+        (figure,) = laid_out("zones", path)
+        assert any(text.get_text().startswith("III") for text in figure.axes[0].texts) == is_named
+        assert any("in stick" in text.get_text() for text in figure.legends[0].get_texts())
 
 
 def test_no_zone_is_named_beyond_its_edge(laid_out, result):
@@ -905,6 +921,8 @@ def test_values_that_differ_by_rounding_have_one_colour():
     noise = 1e-15 * np.array([-1.0, 0.5, 1.0])
     assert list(field_colours.limits(noise, "xx", 10.0)) == [-10.0, 10.0]
     assert len(field_colours.limits(np.array([10.0, 10.02]), "temperature", 10.0)) > 2
+    overshot = np.array([19.993, 20.0, 24.5])  # an oscillation of the mesh below what is cold
+    assert field_colours.limits(overshot, "temperature", 24.5)[0] == 20.0
     # What differs by more stays as it is.
     values = np.array([0.0, 4.0, 4.0 + 1e-6, 10.0])
     levels = field_colours.limits(values, "von_mises", 10.0)
@@ -1138,13 +1156,79 @@ def test_titles_of_fields_side_by_side_stand_apart(laid_out, result):
 def test_titles_side_by_side_begin_on_one_height(laid_out, result):
     with h5py.File(result, "r+") as file:
         points, count = file["VTKHDF/PointData"], len(file["VTKHDF/Points"])
-        points["solid_fraction"] = np.arange(len(points["temperature"])) % count / count
+        points["solid_fraction"] = np.arange(len(points["temperature"])) % (count // 2) / (count // 2)
         points["equivalent_plastic_strain"] = points["solid_fraction"][()]
     (figure,) = laid_out("fields", result, "--quantity", "temperature", "solid_fraction")
     first, second = (axes._left_title.get_window_extent() for axes in panels_of(figure))
     assert second.y1 == pytest.approx(first.y1, abs=1.0)
     assert figure._supxlabel.get_text().endswith(
         "\nthick line inside: edge of the plastic zone; dashed line: solid fraction 0.5")
+
+
+@pytest.mark.parametrize("lower", [0.0, 0.8])
+def test_a_line_is_named_below_the_fields_where_one_is_drawn(kept, result, lower):
+    """There is none where each body yields everywhere or nowhere, nor outside of the window."""
+    with h5py.File(result, "r+") as file:
+        points = file["VTKHDF/PointData"]
+        count = len(file["VTKHDF/Points"])
+        is_upper = np.arange(len(points["temperature"])) % count < count // 2
+        points["equivalent_plastic_strain"] = np.where(is_upper, 1.0, lower)
+    words = "edge of the plastic zone"
+    (figure,) = kept("fields", result, "--quantity", "yy")
+    assert words not in figure.get_supxlabel()
+    with h5py.File(result, "r+") as file:
+        across = np.tile(file["VTKHDF/Points"][:, 0], 15)
+        file["VTKHDF/PointData/equivalent_plastic_strain"][...] = np.maximum(0.0, 10.0 - across)
+    (figure,) = kept("fields", result, "--quantity", "yy")
+    assert words in figure.get_supxlabel()
+    (figure,) = kept("fields", result, "--quantity", "yy", "--window", -1, 5, -1, 5)
+    assert words not in figure.get_supxlabel()
+
+
+def filled_at(figure, place):
+    """Return whether the colours of the first panel cover a place."""
+    contours = [each for each in figure.axes[0].collections if getattr(each, "filled", False)]
+    return any(path.contains_point(place) for each in contours for path in each.get_paths())
+
+
+def test_bodies_that_never_melt_are_blank_and_what_is_solid_is_not(kept, result):
+    """The upper body melts below y = 10, and is solid at the end."""
+    with h5py.File(result, "r+") as file:
+        count, y = len(file["VTKHDF/Points"]), file["VTKHDF/Points"][:, 1]
+        is_upper = np.arange(count) < count // 2
+        melting = np.where(is_upper, np.clip(y / 10.0, 0.0, 1.0), 1.0)
+        file["VTKHDF/PointData/solid_fraction"] = np.concatenate([melting] * 14 + [np.ones(count)])
+        file["VTKHDF/Steps/PointDataOffsets/solid_fraction"] = np.arange(15) * count
+    for increment in (14, 15):
+        (figure,) = kept("fields", result, "--quantity", "solid_fraction", "--scale", 0, "--increment",
+                         increment)
+        assert [filled_at(figure, (10.0, y)) for y in (17.0, 5.0, -10.0)] == [True, True, False]
+    with h5py.File(result, "r+") as file:  # all that there is stays solid
+        file["VTKHDF/PointData/solid_fraction"][...] = 1.0
+    (figure,) = kept("fields", result, "--quantity", "solid_fraction", "--scale", 0)
+    assert filled_at(figure, (10.0, -10.0))
+
+
+def test_stresses_about_an_axis_have_names_of_their_own(kept, result):
+    for card, names in (("TYPE=CAX4", ["Axial stress", "Hoop stress"]), ("TYPE=CPE4", ["Stress", "Stress"])):
+        with h5py.File(result, "r+") as file:
+            del file["deck"]
+            file["deck"] = [f"*ELEMENT, {card}"]
+        (figure,) = kept("fields", result, "--quantity", "yy", "zz")
+        titles = [axes.get_title(loc="left") for axes in panels_of(figure)]
+        assert [title[4:].splitlines()[0] for title in titles] == names
+
+
+def test_labels_beside_a_very_long_model_stand_apart(laid_out, result):
+    with h5py.File(result, "r+") as file:
+        file["VTKHDF/Points"][:, 0] *= 100.0
+        file["VTKHDF/Points"][:, 1] -= 7.0
+    (figure,) = laid_out("fields", result, "--quantity", "temperature", "yy")
+    for axes in panels_of(figure):
+        low, high = axes.get_ylim()
+        labels = [label for at, label in zip(axes.get_yticks(), axes.get_yticklabels()) if low <= at <= high]
+        boxes = [label.get_window_extent() for label in labels]
+        assert labels and all(upper.y0 >= lower.y1 for lower, upper in zip(boxes, boxes[1:]))
 
 
 def test_a_window_shows_its_part_of_the_model_in_colours_of_its_own(kept, fail, result):
@@ -1266,7 +1350,7 @@ def test_profiles_and_fields_name_load_and_time(kept, result):
     with h5py.File(result, "r+") as file:
         file["history/time"][...] /= 100.0
         file["VTKHDF/Steps/Values"][...] /= 100.0
-    words = "temperature of node set TOP 540 \N{DEGREE SIGN}C, time 5.4"
+    words = "temperature of node set TOP = 540 \N{DEGREE SIGN}C, time 5.4"
     (figure,) = kept("profiles", result, "--load", 540)
     assert figure.get_supxlabel() == words
     (figure,) = kept("fields", result, "--load", 540, "--quantity", "temperature")
@@ -1395,7 +1479,7 @@ def test_numbers_of_legends_and_footers_have_minus_signs(turning):
     with h5py.File(turning, "r+") as file:
         file["history/load"][...] *= -1.0
     with Result(turning) as opened:
-        assert opened.load_words(4) == "displacement y of PIN_A-1 \N{MINUS SIGN}5 cm, time 300"
+        assert opened.load_words(4) == "displacement y of PIN_A-1 = \N{MINUS SIGN}5 cm, time 300"
         assert opened.units.short_load(opened.load_label, -0.00002) == "\N{MINUS SIGN}2e\N{MINUS SIGN}05 cm"
         assert opened.row_words(7) == [-8.0]
 
@@ -1580,7 +1664,7 @@ def test_axes_have_the_units_of_the_file_or_none(tmp_path, units):
 @pytest.mark.parametrize(("load", "unit", "label", "value"), [
     ("K", "K", "U_y of TEMPERATURE_FACE (K)", "0.5 K"),
     ("mm", "mm", "U_y of TEMPERATURE_FACE (mm)", "0.5 mm"),
-    ("time", "", "U_y of TEMPERATURE_FACE", "u_y of TEMPERATURE_FACE 0.5"),
+    ("time", "", "U_y of TEMPERATURE_FACE", "u_y of TEMPERATURE_FACE = 0.5"),
 ])
 def test_the_load_axis_has_the_unit_of_the_file_whatever_its_name(load, unit, label, value):
     names = {"length": "mm", "stress": "MPa", "power": "mW", "temperature": "K"}
@@ -1618,6 +1702,8 @@ def test_forces_are_newtons_where_units_are_those_of_newtons():
     assert Units(units).label("Force", "force") == "Force (N)"
     assert Units(units | {"length": "m"}).label("Force", "force") == "Force (MPa m$^2$)"
     assert (unit_of("MPa mm^2"), unit_of("Pa m^2")) == ("N", "N")
+    assert (unit_of("MPa mm^3"), unit_of("Pa m^3")) == ("N mm", "N m")
+    assert unit_of("stress length^3") == unit_of("time") == ""
     assert unit_of("MPa cm^2") == "MPa cm\N{SUPERSCRIPT TWO}"
 
 
@@ -1977,17 +2063,20 @@ def test_a_table_holds_no_formula_of_a_spreadsheet_and_plain_numbers(tmp_path):
 
 
 @pytest.mark.parametrize("gap", [0.0, 0.01])
-@pytest.mark.parametrize("pairing", ["NODES", "SURFACES"])
+@pytest.mark.parametrize("pairing", ["NODES", "SURFACES", "rigid"])
 def test_faces_that_touch_in_the_mesh_do_not_seem_to_overlap(tmp_path, gap, pairing):
     """Magnified, only faces that close a gap of the mesh are drawn beyond each other."""
     deck = tmp_path / "touch.inp"
     lower, upper = [(0, 0), (1, 0), (1, 1), (0, 1)], [(0, 1 + gap), (1, 1 + gap), (1, 2), (0, 2)]
+    low, choice = ["*SURFACE, NAME=LOW", "1, S3"], f", PAIRING={pairing}"
+    if pairing == "rigid":
+        low, choice = ["*SURFACE, NAME=LOW, TYPE=SEGMENTS", "START, -1., 1.", "LINE, 2., 1.",
+                       "*RIGID BODY, REF NODE=9, ANALYTICAL SURFACE=LOW", "*BOUNDARY", "9, 1, 2", "9, 6"], ""
     deck.write_text("\n".join([
-        "*NODE", *(f"{n}, {x}, {y}" for n, (x, y) in enumerate([*lower, *upper], 1)),
+        "*NODE", *(f"{n}, {x}, {y}" for n, (x, y) in enumerate([*lower, *upper, (0, 1)], 1)),
         "*ELEMENT, TYPE=CPE4, ELSET=E", "1, 1, 2, 3, 4", "2, 5, 6, 7, 8", "*MATERIAL, NAME=M",
         "*ELASTIC", "1000., 0.", "*SOLID SECTION, ELSET=E, MATERIAL=M", "*SURFACE, NAME=UP", "2, S1",
-        "*SURFACE, NAME=LOW", "1, S3", "*SURFACE INTERACTION, NAME=I",
-        f"*CONTACT PAIR, INTERACTION=I, NAME=C, PAIRING={pairing}", "UP, LOW", "*STEP", "*STATIC",
+        *low, "*SURFACE INTERACTION, NAME=I", f"*CONTACT PAIR, INTERACTION=I, NAME=C{choice}", "UP, LOW", "*STEP", "*STATIC",
         "*BOUNDARY", "1, 1, 2", "2, 1, 2", "5, 1", "6, 1", "7, 1", "8, 1", "7, 2, 2, -0.02",
         "8, 2, 2, -0.02", "*END STEP", ""]))
     status, said = program.run(deck)

@@ -22,7 +22,7 @@ from thercon.post import stresses  # noqa: E402
 from thercon.post.cli import main as plot  # noqa: E402
 from thercon.post.report.cli import main  # noqa: E402
 from thercon.post.fields import TITLES  # noqa: E402
-from thercon.post.report.data import in_words, kept_steps  # noqa: E402
+from thercon.post.report.data import histories, in_words, kept_steps  # noqa: E402
 from thercon.post.report.listing import read_listing  # noqa: E402
 from thercon.post.report.tables import remark, target_cells  # noqa: E402
 from thercon.post.result import Result  # noqa: E402
@@ -126,7 +126,7 @@ def test_the_slider_moves_every_picture_and_the_console_stays_empty(cylinder, br
         browser.press("#load", *keys)
         seen.append(browser.run(look))
     for place, found in zip((-1, -2, 2), seen):
-        assert f"temperature of TOP {load[place]:g} °C" in found["now"]
+        assert f"temperature of TOP = {load[place]:g} °C" in found["now"]
         assert f"normal force {force[place]:.5g} MPa cm²" in re.sub(" ± [^ ]+", "", found["totals"])
         assert f"largest {mises[place].max():.5g} at node" in found["range"] and found["drawn"]
         assert f"{force[place]:.5g}" in found["history"]
@@ -613,7 +613,7 @@ def test_increments_without_an_uncertainty_say_so(synthetic, browser, tmp_path, 
     for picture, marked in (("zones", 1), ("courses", 2)):
         assert plot([picture, str(tmp_path / "case.vtkhdf"), "--out", str(tmp_path)]) == 0
         drawn = (tmp_path / f"case.{picture}.svg").read_text()
-        assert "dotted lines are ends of steps; the mesh is refined for these alone" in drawn
+        assert "dotted lines are ends of steps; the accuracy is judged at these alone" in drawn
         assert drawn.count("stroke: #8c8c8c") == marked
     assert plot(["profiles", str(tmp_path / "case.vtkhdf"), "--increment", "14", "15", "--out",
                  str(tmp_path)]) == 0
@@ -786,21 +786,65 @@ def test_every_increment_shows_its_own_uncertainties(uncertain, browser):
             assert bars.count("M") == len(times)
 
 
-def test_bars_of_uncertainty_end_within_the_frame(uncertain, browser, tmp_path):
-    """Also one twice as large as the value."""
+@pytest.mark.parametrize("size", [0.9, 20.0])
+def test_bars_of_uncertainty_end_within_the_frame_or_leave_it_to_the_curve(uncertain, browser, tmp_path, size):
+    """Bars that are longer than the curve is high would make it flat."""
     path, _ = uncertain
     copy = shutil.copy(path, tmp_path)
     with h5py.File(copy, "r+") as file:
         rows = file["uncertainty/FACE/normal_force"]
-        rows[:, 1] = 2.0 * rows[:, 0]
+        rows[:, 1] = size * rows[:, 0].max()
     assert main([str(copy), "--out", str(tmp_path)]) == 0
     browser.open(tmp_path / "cylinder.html")
-    frame, bars = browser.run("""const box = document.querySelector('#history-0');
+    frame, bars, curve = browser.run("""const box = document.querySelector('#history-0');
         const frame = box.querySelector('clipPath rect');
         return [[+frame.getAttribute('y'), +frame.getAttribute('height')],
-            box.querySelector('.uncertainty').getAttribute('d')]""")
+            ...['.uncertainty', 'g path[fill=none]'].map(e => box.querySelector(e).getAttribute('d'))]""")
     ends = [float(y) for y in re.findall(r"[ V]([-\d.]+)", bars)]
-    assert len(ends) >= 2 and frame[0] < min(ends) < max(ends) < sum(frame)
+    heights = [float(y) for y in re.findall(r" ([-\d.]+)", curve)]
+    assert len(ends) >= 2 and (frame[0] < min(ends) < max(ends) < sum(frame)) == (size < 1.0)
+    assert size < 1.0 or max(heights) - min(heights) > 0.5 * frame[1]
+
+
+def test_a_chart_of_a_temperature_shows_the_range_of_its_values(synthetic, browser):
+    """A pulse of 2.6 degrees; the rounding of what stays as it is is no pulse."""
+    def heat(file):
+        times = file["history/time"][()]
+        for name, size in (("PULSE", 2.6), ("STILL", 1e-9)):
+            group = file.create_group(f"history/nodes/{name}")
+            group["node"], group["time"], group["increment"] = [7], times, np.arange(1, len(times) + 1)
+            group["temperature"] = 20.0 + size * np.sin(np.arange(len(times)))[:, None] ** 2
+
+    browser.open(synthetic(heat))
+    ticks = browser.run("""return [...document.querySelectorAll('#histories figure')].filter(
+        e => e.querySelector('figcaption').textContent.startsWith('Temperature of ')).map(
+        e => [...e.querySelectorAll('.tick[text-anchor=end]')].map(tick => Number(tick.textContent)))""")
+    assert 19.0 < min(ticks[0]) <= 20.0 < 21.5 < max(ticks[0]) < 24.0
+    assert min(ticks[1]) < 15.0 and max(ticks[1]) > 25.0
+
+
+def test_energies_and_times_have_the_units_of_the_deck(synthetic):
+    def spend(file):
+        for key, unit in (("ALLFD", "MPa mm^3"), ("solid_time", "s"), ("period", "time")):
+            file[f"history/{key}"] = file["history/time"][()]
+            file[f"history/{key}"].attrs["unit"] = unit
+
+    with Result(synthetic(spend).with_suffix(".vtkhdf")) as opened:
+        found = {each["key"]: each["unit"] for each in histories(opened)}
+    assert (found["ALLFD"], found["solid_time"], found["period"]) == ("N mm", "s", "")
+
+
+def test_a_card_without_an_expectation_is_no_check_but_its_value_is_shown(tmp_path):
+    deck = write_deck(tmp_path / "cylinder.inp")
+    cards = deck.read_text().replace("\n20., 900.", "\n450., 900.").split("\n*VERIFY", 1)[0]
+    deck.write_text(f"{cards}\n*Verify, KIND=NONE\nNT, TOP, LAST\n")
+    assert run(deck)[0] == 0
+    assert main([str(deck.with_suffix(".vtkhdf")), "--out", str(tmp_path)]) == 0
+    page = (tmp_path / "cylinder.html").read_text()
+    assert "<dt>checks</dt><dd>none with an expectation</dd>" in page
+    assert "<p>None with an expectation.</p>" in page and 'class="pass"' not in page
+    row = re.search(r'<th scope="row"[^>]*>(?:(?!<tr>).)*?>NT<.*?</tr>', page)[0]
+    assert ">9.0000000E+02<" in row
 
 
 def test_results_of_earlier_versions_have_their_uncertainties(uncertain, tmp_path):

@@ -12,7 +12,7 @@ SIGNED = ("xx", "yy", "zz", "xy", *PRINCIPAL, "radial", "hoop", "flux_x", "flux_
           "mode_temperature")
 ROUNDING = 1e-9  # values that differ by this part of the largest magnitude are the same
 NOTHING = 1e-6  # of the largest magnitude: what is smaller everywhere is 0
-UNSEEN = 1e-4  # of the range of temperatures: so far they may be beyond the colours
+UNSEEN = 2e-3  # of the range of temperatures: so far they may be beyond the colours
 UNIFORM = 1e-3  # of the largest magnitude: a smaller range has one colour
 BEYOND = 0.005  # of the area, at either end of a scale: so much may have values beyond its colours
 FAR = 1.5  # times the range of the others: values that extend it by less have colours too

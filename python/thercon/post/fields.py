@@ -26,7 +26,7 @@ from .field_colours import (
 )
 from .fine_mesh import refine
 from .result import CELL_FIELDS, FIELD_SOURCES, MODE, NO_ANALYSIS, OPEN
-from .rigid_surfaces import draw_rigid, lines_of, with_lines
+from .rigid_surfaces import draw_rigid, lines_of, surfaces, with_lines
 from .style import plt
 
 USUAL = {False: ("temperature", "von_mises", "yy"), True: ("temperature", "radial", "hoop")}
@@ -51,6 +51,7 @@ TITLES = {
     "heat_flux_error": ("Estimated error of heat flux", "flux"),
     MODE: ("Temperature of the leading mode", None),
 }
+OF_AXES = {"xx": "Radial stress", "yy": "Axial stress", "zz": "Hoop stress", "xy": "Shear stress"}
 AMPLITUDE = 0.02  # of the size of the model: displacement of a mode that is drawn
 COLUMNS = 3  # of panels
 LOOKED_AT = 20  # times at most
@@ -90,7 +91,7 @@ def draw_row(result, row, options):
     if options.window:
         window = given_window(options.window, window)
     figure, panels = layout(len(fields), window)
-    layers, titles = [], titles_of(fields, result.units, panels[0])
+    layers, titles = [], titles_of(fields, result, panels[0])
     for axes, letter, (quantity, given) in zip(panels, ascii_lowercase, fields.items()):
         mesh.frame(axes, window, result.units, cut=is_part)
         look = quantity, magnitude(result, quantity, step), options
@@ -119,9 +120,17 @@ def draw_row(result, row, options):
     )
 
 
-def titles_of(fields, units, axes):
+def title_of(result, quantity):
+    """Return title and unit of a quantity; stresses about an axis have names of their own."""
+    words, unit = TITLES[quantity]
+    if result.is_axisymmetric and quantity in OF_AXES:
+        words = words.replace("Stress", OF_AXES[quantity])
+    return words, unit
+
+
+def titles_of(fields, result, axes):
     """Return {quantity: title}: of panels side by side in two lines, if one of them needs two."""
-    titles = {quantity: units.label(*TITLES[quantity]) for quantity in fields}
+    titles = {quantity: result.units.label(*title_of(result, quantity)) for quantity in fields}
     if axes.get_subplotspec().get_gridspec().ncols > 1:
         titles = {q: re.sub(r" (?=[$(]|of )", "\n", title, count=1) for q, title in titles.items()}
     if any("\n" in title for title in titles.values()):
@@ -133,18 +142,27 @@ def outline_plastic_zone(axes, grid, fine, strain):
     """Draw where the plastic strain is a hundredth of its largest value; return what the line is."""
     if strain is None or not np.nanmax(strain) > 0.0:
         return ""
-    values = np.nan_to_num(fine.values(strain.astype(float)))
-    axes.tricontour(grid, values, levels=[0.01 * np.nanmax(strain)], colors="black", linewidths=1.0)
-    return "thick line inside: edge of the plastic zone"
+    values, level = np.nan_to_num(fine.values(strain.astype(float))), 0.01 * np.nanmax(strain)
+    if values.min() >= level:
+        return ""
+    line = axes.tricontour(grid, values, levels=[level], colors="black", linewidths=1.0)
+    return "thick line inside: edge of the plastic zone" if is_seen(axes, line) else ""
+
+
+def is_seen(axes, line):
+    """Whether a line of equal value has a part within the axes."""
+    points = np.concatenate([np.empty((0, 2)), *line.allsegs[0]])
+    low, high = np.transpose([axes.get_xlim(), axes.get_ylim()])
+    return bool(np.any(np.all((points >= low) & (points <= high), axis=1)))
 
 
 def draw_front(axes, grid, fine, fraction):
     """Draw the front of solidification, where the solid fraction is a half; return what the line is."""
     if fraction is None or not np.nanmin(fraction) < 0.5 < np.nanmax(fraction):
         return ""
-    axes.tricontour(grid, fine.values(fraction.astype(float)), levels=[0.5], colors="black",
-                    linewidths=1.4, linestyles="dashed")
-    return "dashed line: solid fraction 0.5"
+    line = axes.tricontour(grid, fine.values(fraction.astype(float)), levels=[0.5], colors="black",
+                           linewidths=1.4, linestyles="dashed")
+    return "dashed line: solid fraction 0.5" if is_seen(axes, line) else ""
 
 
 def contact_window(result, moved, whole):
@@ -220,6 +238,8 @@ def touches_after_a_gap(result):
     other."""
     cells = result.cells
     point = dict(zip(cells.node_id.tolist(), cells.points))
+    rigid = np.concatenate([np.empty((0, 2, 2)), *(
+        np.stack((points[:-1], points[1:]), axis=1) for points, _ in surfaces(result))])
     for contact in result.contacts() if result.contact_names else ():
         closed = (contact["status"] != OPEN).any(axis=0)
         slave, master = (contact[key][closed].tolist() for key in ("slave_node", "master_node"))
@@ -227,18 +247,18 @@ def touches_after_a_gap(result):
             apart = [np.abs(point[n] - point[m]).max() for n, m in zip(slave, master)]
         else:
             outline = cells.boundary()
-            apart = [from_outline(cells, outline, n) for n in slave]
+            apart = [from_outline(cells, outline, rigid, n) for n in slave]
         if apart and max(apart) > 1e-6 * np.ptp(cells.points, axis=0).max():
             return True
     return False
 
 
-def from_outline(cells, outline, number):
-    """Return the distance of a node from the edges that bodies end at, but its own."""
+def from_outline(cells, outline, rigid, number):
+    """Return the distance of a node from rigid surfaces and the edges that bodies end at, but its own."""
     (node,) = np.flatnonzero(cells.node_id == number)
     edges = outline[(outline != node).all(axis=1)]
     halves = np.where(edges[:, 2:] >= 0, edges[:, [0, 2, 2, 1]], edges[:, [0, 1, 0, 1]])
-    first, last = cells.points[halves.reshape(-1, 2)].swapaxes(0, 1)
+    first, last = np.concatenate((cells.points[halves.reshape(-1, 2)], rigid)).swapaxes(0, 1)
     place = cells.points[node]
     along = np.clip(((place - first) * (last - first)).sum(axis=1)
                     / ((last - first) ** 2).sum(axis=1), 0.0, 1.0)
@@ -421,7 +441,9 @@ def draw_points(axes, grid, fine, given, look, where):
         shown = shown[np.isfinite(shown)]
         below, above = overflow(shown, levels) if shown.size else (False, False)
         # What is interpolated beyond all nodes, or out of sight, has the colours at the ends.
-        settled = np.clip(settled, -np.inf if below else levels[0], np.inf if above else levels[-1])
+        # A region that is at the last level is filled where it is below that by less than rounding.
+        highest = levels[-1] - ROUNDING * np.ptp(levels)
+        settled = np.clip(settled, -np.inf if below else levels[0], np.inf if above else highest)
         extend = extend_words(below, above)
         colours, norm = colours_of(quantity, levels)
         filled = axes.tricontourf(grid, settled, levels=levels, cmap=colours, norm=norm, extend=extend)

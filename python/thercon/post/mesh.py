@@ -118,6 +118,7 @@ def frame(axes, window, units, cut=False):
     aspect = np.ptp(window[:, 0]) / np.ptp(window[:, 1])
     labels = 6 if aspect >= 0.6 else int(np.clip(22.0 * aspect, 1, 3))  # that have room
     axes.locator_params(axis="x", nbins=labels, min_n_ticks=min(labels, 2))
+    axes.locator_params(axis="y", min_n_ticks=1 if aspect > 10.0 else 2)
     axes.tick_params(direction="out", top=False, right=False)
     for side in ("top", "right"):
         axes.spines[side].set_visible(cut)

@@ -2,7 +2,7 @@
 
 import re
 from dataclasses import dataclass, field
-from functools import cached_property
+from functools import cached_property, reduce
 from pathlib import Path
 
 import h5py
@@ -59,7 +59,7 @@ INCLINED = 0.7  # of the length of a face: where x changes by less, places are l
 LEFT_OUT = 0.01  # of the force and of the heat: as much may be outside of a profile
 TOLD = 1e-4  # of force or heat: smaller shares are not told
 UNJUDGED = "inside a step: the mesh is not refined for this time"
-MARKED = "dotted lines are ends of steps; the mesh is refined for these alone"
+MARKED = "dotted lines are ends of steps; the accuracy is judged at these alone"
 ROUND = ("cpu_seconds", "unknowns", "elements", "increments")
 ANALYSIS = ("time", "unstable_modes", "growth_rate", "period")
 NO_FINER_VALUE = "not there on a finer mesh"  # why growth rates have no uncertainty
@@ -340,6 +340,7 @@ class Result:
         """What the load axis shows, as the file names it."""
         label = text(self.file["history"]["load"].attrs.get("label", "load"))
         label = re.sub(r"^u_([xy]) of", r"displacement \1 of", label)
+        label = re.sub(r" of (\d+)$", r" of node \1", label)
         return label.replace("$", "")  # which begins a formula in a picture
 
     def abscissa(self, over=None):
@@ -725,7 +726,21 @@ class Result:
         absent."""
         _, component = FIELD_SOURCES[quantity]
         values = self.source(quantity, step)
+        if quantity == "solid_fraction" and values is not None:
+            values = np.where(self.melts, values, np.nan)
         return values if values is None or component is None else values[:, component]
+
+    @cached_property
+    def melts(self):
+        """Which points are of bodies that are not solid at all times; all of them where none is."""
+        cells, steps = self.cells, range(len(self.field_times))
+        least = reduce(np.fmin, (self.point_data("solid_fraction", step) for step in steps))
+        bodies = [cells.bodies[kind][(least[group] < 1.0).any(axis=1)]
+                  for kind, group in cells.groups.items()]
+        found = np.zeros(len(least), dtype=bool)
+        for kind, group in cells.groups.items():
+            found[group[np.isin(cells.bodies[kind], np.concatenate(bodies))]] = True
+        return found if found.any() else ~found
 
 
 def text(value):

@@ -7,7 +7,7 @@ from .words import number_text
 UNIT_NAMES = ("length", "stress", "power", "temperature", "time")
 
 
-NEWTON = {"MPa mm^2": "N", "Pa m^2": "N"}
+NEWTON = {"MPa mm^2": "N", "Pa m^2": "N", "MPa mm^3": "N mm", "Pa m^3": "N m"}
 
 
 class Units:
@@ -36,8 +36,9 @@ class Units:
         return self.label(label[:1].upper() + label[1:], self.load)
 
     def load_value(self, label, value):
-        """Return one load in words, such as "temperature of TOP 540 C"."""
-        return f"{label} {number_text(value)} {self.load_unit()}".strip()
+        """Return one load in words, such as "temperature of TOP = 540 C"."""
+        equal = "" if label == "time" else " ="
+        return f"{label}{equal} {number_text(value)} {self.load_unit()}".strip()
 
     def short_load(self, label, value):
         """Return one load in few words: with its unit, or its name where it is the time."""
@@ -63,6 +64,6 @@ def unit_of(words):
     """Return the unit that a dataset names as pictures and page show it; empty where the deck names
     none and it has a quantity in its place."""
     words = NEWTON.get(words, words)
-    is_named = words != "-" and not re.search("length|stress|power|temperature", words)
+    is_named = words != "-" and not re.search("length|stress|power|temperature|time", words)
     raised = plain_unit(words).replace("^2", "\N{SUPERSCRIPT TWO}")
     return raised.replace("^3", "\N{SUPERSCRIPT THREE}") if is_named else ""

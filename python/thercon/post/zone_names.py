@@ -18,7 +18,8 @@ def name_regions(picture, axes):
     """Write I, II and III where each region has room for it, on the fewest marks; of several such
     places where there is most room.
 
-    A region too narrow for its name has it outside, with a line, so that no curve is covered.
+    A region too narrow for its name has it outside, with a line, so that no curve is covered; or none
+    where it would cover marks there, which the legend names.
     """
     axes.figure.draw_without_rendering()  # so that the size of the axes is known
     u, v = (np.linspace(0.0, 1.0, n) for n in LABEL_GRID)
@@ -36,6 +37,8 @@ def name_regions(picture, axes):
         covered = marks_under(picture, axes, words, u, v)
         if room[at] < LABEL_ROOM:
             place = free_place(points, room, points[at], points[taken], covered)
+            if covered[place]:
+                continue
         else:
             fits = np.flatnonzero((states == state) & (room >= LABEL_ROOM))
             place = at = fits[np.lexsort((-room[fits], covered[fits]))[0]]

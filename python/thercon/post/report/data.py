@@ -5,14 +5,14 @@ import base64
 import numpy as np
 
 from .. import branch, mesh
-from ..courses import HEAT
 from ..edge_curves import edge_curves
 from ..field_colours import PRINCIPAL, SIGNED
 from ..cells import CORNERS
-from ..fields import TITLES, USUAL, apart_words, touches_after_a_gap
+from ..fields import USUAL, apart_words, title_of, touches_after_a_gap
 from ..rigid_surfaces import motion_of, surfaces
-from ..result import CELL_FIELDS, FIELD_SOURCES, NOISE, UNJUDGED, words_of
+from ..result import CELL_FIELDS, FIELD_SOURCES, NOISE, UNJUDGED, text, words_of
 from ..style import matplotlib
+from ..units import unit_of
 from .sets import of_sets
 
 FIELD_NUMBERS = 1_400_000  # numbers of all fields together: at most 3.7 MB of text
@@ -199,7 +199,7 @@ def histories(result):
                   for each in totals(result, contact)]
     for key, values in result.history.items():
         if key not in ("time", "load") and values.ndim == 1 and not key.endswith("_imbalance"):
-            unit = plain(result.units.names.get("power", "")) if key in HEAT else ""
+            unit = unit_of(text(result.file["history"][key].attrs.get("unit", "")))
             found.append({"key": key, "label": capital(words_of(key)), "unit": unit,
                           "values": listed(values), "uncertainty": uncertainty(known, key)})
     kinds = [next((kind for kind in KINDS if kind in each["key"]),
@@ -290,7 +290,7 @@ def kept_steps(count, numbers):
 
 def quantity_data(result, quantity, steps, used):
     """Return one field at the steps that the page keeps; `used` are the points that it has."""
-    words, unit = TITLES[quantity]
+    words, unit = title_of(result, quantity)
     is_of_elements = quantity in CELL_FIELDS
     values = [result.field(quantity, step) for step in steps]
     return {

@@ -69,7 +69,8 @@ function rangeOf(values, zero) {
    let low = zero ? 0 : Infinity, high = zero ? 0 : -Infinity;
    for (const v of values) if (Number.isFinite(v)) { low = Math.min(low, v); high = Math.max(high, v); }
    if (low > high || (low === 0 && high === 0)) return [0, 1];
-   const room = high > low ? 0.06 * (high - low) : 0.5 * Math.abs(high) || 0.5;
+   const isWide = high - low > 1e-4 * Math.max(Math.abs(low), Math.abs(high));   // labels tell its ends apart
+   const room = isWide ? 0.06 * (high - low) : 0.5 * Math.abs(high) || 0.5;
    return [zero && low === 0 && high > 0 ? 0 : low - room, zero && high === 0 && low < 0 ? 0 : high + room];
 }
 const peak = values => values.reduce((most, v) => Math.abs(v) > most ? Math.abs(v) : most, 0);
@@ -105,8 +106,8 @@ function chart(box, options) {
          if (line.mark && !(line.plain && line.plain[k]))
             marks += `M${(X(a) - 2.6).toFixed(1)} ${Y(b).toFixed(1)}a2.6 2.6 0 1 0 5.2 0a2.6 2.6 0 1 0 -5.2 0`;
       }
+      if (bars) out.push(html`<path d="${bars}" stroke="${GREY}" class="uncertainty"/>`);
       out.push(html`<path d="${path}" fill="none" stroke="${line.colour}" stroke-width="${line.width || 1.6}" stroke-dasharray="${line.dash || ''}"/>`);
-      if (bars) out.push(html`<path d="${bars}" stroke="${INK}" class="uncertainty"/>`);
       if (marks) out.push(html`<path d="${marks}" fill="${line.hollow ? PAPER : line.colour}" stroke="${line.colour}"/>`);
    }
    out.push(html`</g><rect x="${left}" y="${top}" width="${W - left - right}" height="${H - top - bottom}" fill="none" stroke="var(--ink)"/>`);
@@ -141,7 +142,7 @@ const dash = (x, y) => `M${(x - 4).toFixed(1)} ${y.toFixed(1)}h8`;
 const times = data.load.times, count = times.length;
 const abscissa = data.load.rises ? data.load.values : times;
 let row = count - 1;
-const loadWords = k => `${data.load.label} ${show(data.load.values[k])} ${data.load.unit}`.trim();
+const loadWords = k => `${data.load.label}${data.load.label === 'time' ? '' : ' ='} ${show(data.load.values[k])} ${data.load.unit}`.trim();
 function tellLoad() {
    const time = data.load.label === 'time' ? '' : `, time ${show(times[row])} ${unit('time')}`.trimEnd();
    const factor = data.load.factors[row] === null ? '' : `, load factor ${show(data.load.factors[row])}`;
@@ -286,8 +287,9 @@ function branchLines(y) {
 const SERIES = [INK, BLUE, VERMILION, '#009e73', '#e69f00', '#56b4e9'];
 const setLines = ({at, curves}, along) => curves.map(({name, values}, n) => ({name, colour: SERIES[n],
    x: at.map(k => along[k]), y: values.map(v => v === null ? NaN : v), mark: at.length <= 60}));
-// Ends of the bars of uncertainty.
-const ends = (y, off) => y.flatMap((v, k) => Number.isFinite(off[k]) ? [v - off[k], v + off[k]] : []);
+// Ends of the bars of uncertainty; those of a curve that is less high than one of them are clipped.
+const ends = (y, off) => peak(off) > peak(y) ? [] :
+   y.flatMap((v, k) => Number.isFinite(off[k]) ? [v - off[k], v + off[k]] : []);
 function drawHistories() {
    const along = data.branch ? data.branch.factor : abscissa;
    const low = Math.min(...along), high = Math.max(...along), room = 0.03 * (high - low) || 0.5;
@@ -299,7 +301,7 @@ function drawHistories() {
       chart($(`history-${k}`), {
          width: 360, height: 200, title: `${each.label} over the load`,
          xLabel: data.branch ? 'Load factor' : data.load.axis, xRange: [low - room, high + room],
-         yLabel: each.unit, yRange: rangeOf(sets ? sets.flatMap(line => line.y) : [...y, ...ends(y, each.uncertainty)], true),
+         yLabel: each.unit, yRange: rangeOf(sets ? sets.flatMap(line => line.y) : [...y, ...ends(y, each.uncertainty)], !each.key.includes('temperature')),
          uprights: [along[row]],
          lines: sets || (data.branch ? branchLines(y) : [{x: abscissa, y, off: each.uncertainty, colour: BLUE, mark: count <= 60}]),
          caption: html`${each.label}: <b>${show(y[row])}</b>${within(each, row)} ${each.unit}`,

@@ -38,7 +38,6 @@ def facts(result, listing):
     """Return what the run was."""
     run, cells = result.file["run"].attrs, result.cells
     bodies = {int(b) for group in cells.bodies.values() for b in group}
-    passed, failed = (int(run.get(f"verify_{key}", 0)) for key in ("passed", "failed"))
     seconds = sum(float(run[key]) for key in run if key.startswith("seconds_"))
     rows = []
     if listing:
@@ -47,7 +46,7 @@ def facts(result, listing):
     rows += [
         ("increments", result.increments),
         ("last increment", last_load(result)),
-        ("checks", f"{passed} passed, {failed} failed" if passed + failed else "none"),
+        ("checks", counts_of_checks(result)),
         ("mesh", f"{cells.count} elements, {len(np.unique(cells.node_id))} nodes, "
          f"{len(bodies)} bod{'y' if len(bodies) == 1 else 'ies'}"),
     ]
@@ -63,6 +62,15 @@ def facts(result, listing):
     rows += [("time without uncertainties", spent)]
     listed = joined(html("<div><dt>{}</dt><dd>{}</dd></div>", *row) for row in rows)
     return html('<dl class="facts">{}</dl>', listed)
+
+
+def counts_of_checks(result):
+    """Return how many *VERIFY checks passed and failed; cards of KIND=NONE do neither."""
+    run = result.file["run"].attrs
+    passed, failed = (int(run.get(f"verify_{key}", 0)) for key in ("passed", "failed"))
+    has_cards = any(card.upper().startswith("*VERIFY") for card in result.deck)
+    without = "none with an expectation" if has_cards else "none"
+    return f"{passed} passed, {failed} failed" if passed + failed else without
 
 
 def last_load(result):
@@ -253,21 +261,23 @@ def missing(result):
 
 def checks(result, listing):
     """Return the verdicts of the *VERIFY cards."""
-    run = result.file["run"].attrs
-    passed, failed = (int(run.get(f"verify_{key}", 0)) for key in ("passed", "failed"))
-    if passed + failed == 0:
+    words = counts_of_checks(result)
+    if words == "none":
         return html("<p>The deck has no *VERIFY checks.</p>")
-    told = html("<p>{} passed, {} failed.</p>", passed, failed)
+    told = html("<p>{}.</p>", capital(words))
     if listing is None:
         return joined([told, missing(result)])
-    if not listing.checks:  # the listing is that of a later round
-        return joined([told, html("<p>They were judged in round 1, on the deck as written.</p>")])
+    if not listing.checks:  # the listing is that of a later round, or of a run that was broken off
+        earlier = html("<p>They were judged in round 1, on the deck as written.</p>")
+        return joined([told, earlier if result.accuracy else ""])
     head = ["card", "quantity", "where", "time", "expected", "found", "deviation", "allowed",
             "verdict", "kind and source"]
     rows = []
-    for check in sorted(listing.checks, key=lambda each: each.verdict == "PASS"):
+    for check in sorted(listing.checks, key=lambda each: each.verdict != "FAIL"):
         source = f"{check.kind}: {check.source}" if check.source else check.kind
-        verdict = html('<span class="{}">{}</span>{}', check.verdict.lower(), check.verdict,
+        said = check.verdict.replace("-", "–")  # those of KIND=NONE pass in listings of earlier versions
+        said = "–" if (check.kind, said) == ("NONE", "PASS") else said
+        verdict = html('<span class="{}">{}</span>{}', said.lower(), said,
                        f" {check.failed}" if check.failed else "")
         words = (check.card, check.quantity, check.where, check.time, check.expected, check.found,
                  check.deviation, f"{check.allowed} {check.measure}")
