@@ -1480,6 +1480,10 @@ def test_numbers_of_legends_and_footers_have_minus_signs(turning):
         file["history/load"][...] *= -1.0
     with Result(turning) as opened:
         assert opened.load_words(4) == "displacement y of PIN_A-1 = \N{MINUS SIGN}5 cm, time 300"
+    with h5py.File(turning, "r+") as file:
+        file["history/load"].attrs["label"] = "u_y of 9000"
+    with Result(turning) as opened:
+        assert opened.load_label == "displacement y of node 9000"
         assert opened.units.short_load(opened.load_label, -0.00002) == "\N{MINUS SIGN}2e\N{MINUS SIGN}05 cm"
         assert opened.row_words(7) == [-8.0]
 
@@ -2070,6 +2074,7 @@ def test_faces_that_touch_in_the_mesh_do_not_seem_to_overlap(tmp_path, gap, pair
     lower, upper = [(0, 0), (1, 0), (1, 1), (0, 1)], [(0, 1 + gap), (1, 1 + gap), (1, 2), (0, 2)]
     low, choice = ["*SURFACE, NAME=LOW", "1, S3"], f", PAIRING={pairing}"
     if pairing == "rigid":
+        lower = [(x, y - 5) for x, y in lower]
         low, choice = ["*SURFACE, NAME=LOW, TYPE=SEGMENTS", "START, -1., 1.", "LINE, 2., 1.",
                        "*RIGID BODY, REF NODE=9, ANALYTICAL SURFACE=LOW", "*BOUNDARY", "9, 1, 2", "9, 6"], ""
     deck.write_text("\n".join([

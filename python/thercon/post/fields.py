@@ -419,8 +419,9 @@ def draw_points(axes, grid, fine, given, look, where):
     group of bodies. `given` are values at nodes; `look` is as above, `where` what `inside_of` returns."""
     (quantity, scale, options), (inside, nodes) = look, where
     values = fine.values(given)
-    if quantity in ("von_mises", "plastic_strain", "creep_strain"):
-        values = np.maximum(values, 0.0)  # quadratic interpolation can undershoot
+    if quantity in ("von_mises", "plastic_strain", "creep_strain", "solid_fraction"):
+        # Quadratic interpolation can leave the range that there is.
+        values = np.clip(values, 0.0, 1.0 if quantity == "solid_fraction" else np.inf)
     broken = ~np.isfinite(values)
     members = {body: fine.triangles[fine.bodies == body] for body in np.unique(fine.bodies)}
     members = {body: np.unique(triangles) for body, triangles in members.items()}
