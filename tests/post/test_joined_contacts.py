@@ -246,7 +246,7 @@ def test_tables_of_more_than_six_bodies_are_folded_and_tell_which_they_are(tmp_p
     opened = f"<details><summary>{count} bodies at the last increment</summary>"
     assert (opened in words) == (count > 6)
     assert re.findall(r"<caption>Body (.*?) at the last", words) == [
-        f"{k + 1} (of STEEL, first node {10 * k + 1})" for k in range(count)]
+        f"{k + 1} (B{k} of STEEL, first node {10 * k + 1})" for k in range(count)]
 
 
 def test_zones_end_at_the_last_increment(result):
