@@ -603,19 +603,26 @@ contains
       type(contact_workspace_type), intent(out) :: tangent
       logical, intent(out) :: sound                   !! whether the derivative exists
       logical :: moves(size(state%contact_state)), singular
-      integer :: k
+      integer :: point(system%schur%order), i, k   ! point: that moves by the row, or 0
 
       tangent = work
       sound = .true.
       moves = work%closing%acts .and. state%contact_state == contact_stick .and. system%tangent > 0
       if (.not. any(moves)) return
-      call tangent%rows%arm%reserve(count(moves), 8*count(moves))
-      do k = 1, size(moves)
-         associate (law => work%closing(k))
-            if (moves(k)) call system%add_arm(k, law%first, law%compliance + law%rate, &
-               tangent%rows%arm)
-         end associate
-      end do
+      point = 0
+      point(pack(system%tangent, moves)) = pack([(k, k=1, size(moves))], moves)
+      associate (forces => tangent%rows%forces, frozen => work%rows%forces)
+         call forces%reserve(frozen%count, size(frozen%value))
+         do i = 1, size(point)
+            if (point(i) == 0) then
+               call forces%add(frozen%values_of(i), frozen%coefficients_of(i))
+            else
+               associate (law => work%closing(point(i)))
+                  call system%add_closing(point(i), law%first, law%compliance + law%rate, forces)
+               end associate
+            end if
+         end do
+      end associate
       call tangent%factor_rows(system, singular)
       sound = .not. singular
    end subroutine make_tangent

@@ -135,7 +135,7 @@ contains
       type(contact_rows_type), intent(in) :: rows
       !> Too many rows change, or one of the sets is all but singular
       logical, intent(out) :: failed
-      logical, dimension(size(rows%own)) :: is_free, was_free
+      logical, dimension(size(rows%spring)) :: is_free, was_free
       integer, allocatable :: changed(:)
       real(dp), allocatable :: columns(:, :), matrix(:, :)
       integer :: i, j
@@ -181,18 +181,13 @@ contains
       integer, intent(in) :: i
       logical, intent(in) :: is_free(:)
       real(dp) :: row(size(is_free))
-      integer :: c, t
+      integer :: t
 
       row = 0.0_dp
       if (is_free(i)) then
-         call system%schur%add_row(i, rows%own(i), row)
-         if (rows%partner(i) > 0) call system%schur%add_row(rows%partner(i), rows%share(i), row)
-         c = findloc(rows%closing, i, dim=1)
-         if (c > 0) then
-            do t = rows%arm%start(c), rows%arm%start(c + 1) - 1
-               call system%schur%add_row(rows%arm%value(t), rows%arm%coefficient(t), row)
-            end do
-         end if
+         do t = rows%forces%start(i), rows%forces%start(i + 1) - 1
+            call system%schur%add_row(rows%forces%value(t), rows%forces%coefficient(t), row)
+         end do
          row(i) = row(i) + rows%spring(i)
       else
          row(i) = system%own(i)
@@ -263,7 +258,7 @@ contains
          part = self%fronts%solve_part(rows, forces)
          return
       end if
-      allocate (x(size(self%rows%own), size(forces, 2)), source=0.0_dp)
+      allocate (x(size(self%rows%spring), size(forces, 2)), source=0.0_dp)
       x(rows, :) = forces
       call self%solve(x)
       allocate (is_free(size(x, 1)), source=.false.)

@@ -81,21 +81,12 @@ contains
       type(contact_fronts_type), intent(inout) :: self
       type(contact_system_type), intent(in) :: system
       real(dp) :: size_of_row(system%schur%order)
-      integer :: i, k
+      type(sum_list_type) :: sizes
 
       associate (rows => self%rows)
-         size_of_row = abs(rows%own)*system%row_size + abs(rows%spring)
-         do i = 1, size(size_of_row)
-            if (rows%partner(i) > 0) size_of_row(i) = size_of_row(i) + &
-               abs(rows%share(i))*system%row_size(rows%partner(i))
-         end do
-         do i = 1, size(rows%closing)
-            associate (to => size_of_row(rows%closing(i)))
-               do k = rows%arm%start(i), rows%arm%start(i + 1) - 1
-                  to = to + abs(rows%arm%coefficient(k))*system%row_size(rows%arm%value(k))
-               end do
-            end associate
-         end do
+         size_of_row = abs(rows%spring)
+         sizes = rows%forces%without_signs()
+         call sizes%add_totals(system%row_size, size_of_row)
          self%scale = 0.0_dp*size_of_row
          self%scale(rows%free) = 1.0_dp/max(size_of_row(rows%free), tiny(1.0_dp))
       end associate
@@ -141,12 +132,11 @@ contains
       logical, intent(in) :: changed(:)
       integer, intent(in) :: of_motions
       type(triplet_list_type), intent(out) :: entries
-      type(sum_list_type) :: forces, rows   ! in each row, C; in which rows each one is, C^T
+      type(sum_list_type) :: rows   ! in which each force is, C^T
       integer :: e, i, j, k
 
-      forces = self%rows%forces()
-      rows = forces%transposed(system%schur%order)
-      associate (s => system%schur%sparse, home => system%tree%front)
+      rows = self%rows%forces%transposed(system%schur%order)
+      associate (s => system%schur%sparse, home => system%tree%front, forces => self%rows%forces)
          associate (used => forces%value(:forces%start(forces%count + 1) - 1))
             call entries%reserve(sum(s%row_start(used + 1) - s%row_start(used)) + size(home) + &
                2*of_motions + self%border%count)

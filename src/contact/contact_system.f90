@@ -35,9 +35,9 @@
 !> stiffness against bending may be as small as rounding.
 !>
 !> The rows of an active set say which of d are sought, and what forces and displacements enter the
-!> row of each. A slipping contact point's tangential row is lambda_t + share lambda_n = 0, or
-!> without a share the largest friction for 0; that of a contact point which closes and sticks,
-!> times a stiffness, own lambda_t + arm.lambda + spring d_t = 0.
+!> row of each. A slipping contact point's tangential row is lambda_t + direction mu lambda_n = 0,
+!> or lambda_t = the largest friction; that of a contact point which closes and sticks, times a
+!> stiffness, compliance lambda_t + a.lambda + spring d_t = 0.
 !>
 !> Its solutions, and all of it that changes, are in contact_workspace.
 !>
@@ -89,7 +89,7 @@ module contact_system
    contains
       procedure :: set_fronts
       procedure :: on_tail
-      procedure :: add_arm
+      procedure :: add_closing
       procedure :: least_force
       procedure :: free_motions
    end type contact_system_type
@@ -97,15 +97,10 @@ module contact_system
    !> Rows of an active set.
    type :: contact_rows_type
       integer, allocatable :: free(:)        !! rows on the tail that are sought
-      integer, allocatable :: partner(:)     !! (tail) row of d_n whose force enters the row, or 0
-      real(dp), allocatable :: share(:)      !! (tail) factor of that force
-      real(dp), allocatable :: own(:)        !! (tail) factor of the row's own force
+      type(sum_list_type) :: forces          !! (tail, tail) factors of forces in each free row
       real(dp), allocatable :: spring(:)     !! (tail) factor of the row's displacement
-      integer, allocatable :: closing(:)     !! (c) rows of contact points that close and stick
-      type(sum_list_type) :: arm             !! (c, tail) factors of forces in them
    contains
       procedure :: combine
-      procedure :: forces
    end type contact_rows_type
 
    integer, parameter :: contact_open = 0   !! gap, zone I
@@ -172,36 +167,25 @@ contains
       type(closing_law_type), intent(in) :: closing(:)    !! (m) laws of closing contact points
       type(pressure_overclosure_type), intent(in) :: soft           !! tangents of soft faces
       type(contact_rows_type) :: rows
-      logical :: sought(2, size(state%contact_state))
-      integer :: k, tail
+      logical :: is_free(system%schur%order), sought(2, size(state%contact_state))
+      integer :: point(system%schur%order), i, k   ! point: whose tangential row it is, or 0
 
-      tail = system%schur%order
-      allocate (rows%partner(tail), source=0)
-      allocate (rows%share(tail), rows%spring(tail), source=0.0_dp)
-      allocate (rows%own(tail), source=1.0_dp)
+      allocate (rows%spring(size(point)), source=0.0_dp)
       sought(1, :) = state%contact_state == contact_open .or. soft%is_soft
       where (state%contact_state /= contact_open .and. soft%is_soft)
          rows%spring(system%normal) = soft%stiffness
       end where
       sought(2, :) = system%tangent > 0
-      rows%closing = pack(system%tangent, system%tangent > 0 .and. closing%acts .and. &
-         state%contact_state == contact_stick)
-      call rows%arm%reserve(size(rows%closing), 8*size(rows%closing))
+      point = 0
       do k = 1, size(state%contact_state)
          if (system%tangent(k) == 0) cycle
-         associate (row => system%tangent(k), law => closing(k), compliance => system%compliance(k))
-            if (state%contact_state(k) == contact_open) then
-               cycle
-            else if (state%contact_state(k) == contact_slip) then
-               if (is_capped(state%direction(k))) cycle
-               rows%partner(row) = system%normal(k)
-               rows%share(row) = state%direction(k)*friction(k)
-            else if (law%acts) then
-               rows%own(row) = system%alone(k)*compliance
-               rows%spring(row) = system%alone(k)*(1.0_dp - law%fraction)
-               call system%add_arm(k, law%first, law%compliance, rows%arm)
+         point(system%tangent(k)) = k
+         if (state%contact_state(k) /= contact_stick) cycle
+         associate (spring => rows%spring(system%tangent(k)), compliance => system%compliance(k))
+            if (closing(k)%acts) then
+               spring = system%alone(k)*(1.0_dp - closing(k)%fraction)
             else if (compliance > 0.0_dp) then
-               rows%spring(row) = 1.0_dp/compliance
+               spring = 1.0_dp/compliance
             else
                sought(2, k) = .false.
             end if
@@ -209,6 +193,24 @@ contains
       end do
       rows%free = [pack(reshape([(system%normal(k), system%tangent(k), k=1, &
          size(state%contact_state))], shape(sought)), sought), system%link]
+      is_free = .false.
+      is_free(rows%free) = .true.
+      call rows%forces%reserve(size(point), 2*size(point))
+      do i = 1, size(point)
+         k = point(i)
+         if (.not. is_free(i)) then
+            call rows%forces%add([integer ::], [real(dp) ::])
+         else if (k == 0) then
+            call rows%forces%add_value(i)
+         else if (state%contact_state(k) == contact_slip .and. .not. is_capped( &
+            state%direction(k))) then
+            call rows%forces%add([i, system%normal(k)], [1.0_dp, state%direction(k)*friction(k)])
+         else if (state%contact_state(k) == contact_stick .and. closing(k)%acts) then
+            call system%add_closing(k, closing(k)%first, closing(k)%compliance, rows%forces)
+         else
+            call rows%forces%add_value(i)
+         end if
+      end do
    end function rows_of
 
    !> Sets the fronts of a sparse tail: those of a former one with the same unknowns and pattern.
@@ -295,20 +297,21 @@ contains
       end do
    end function on_tail
 
-   !> Adds the factors of forces in the row of a contact point that closes, times its stiffness.
-   pure subroutine add_arm(self, k, first, factors, arms)
+   !> Adds the factors of forces in the row of a contact point that closes and sticks, times its
+   !> stiffness.
+   pure subroutine add_closing(self, k, first, factors, forces)
       class(contact_system_type), intent(in) :: self
       integer, intent(in) :: k                        !! the contact point
       integer, intent(in) :: first                    !! first one of its interface
       real(dp), intent(in) :: factors(:, :)           !! (2, n) of its interface [length/force]
-      type(sum_list_type), intent(inout) :: arms
+      type(sum_list_type), intent(inout) :: forces
       integer :: i
 
       associate (last => first + size(factors, 2) - 1)
-         call arms%add([(self%normal(i), self%tangent(i), i=first, last)], self%alone(k)*reshape( &
-            factors, [size(factors)]))
+         call forces%add([self%tangent(k), (self%normal(i), self%tangent(i), i=first, last)], &
+            self%alone(k)*[self%compliance(k), factors])
       end associate
-   end subroutine add_arm
+   end subroutine add_closing
 
    !> What the forces of a law add to the slip, a.lambda.
    pure real(dp) function lag(self, state)
@@ -329,75 +332,33 @@ contains
       least_force = self%least_length*maxval([0.0_dp, self%alone, self%own])
    end function least_force
 
-   !> Forces, or columns of S, as they enter the rows.
+   !> Forces, or columns of S, as they enter the free rows.
    pure function combine(self, columns) result(rows)
       class(contact_rows_type), intent(in) :: self
       real(dp), intent(in) :: columns(:, :)           !! (tail, columns)
-      real(dp) :: rows(size(columns, 1), size(columns, 2)), of_arms(size(self%closing))
-      integer :: i, j
+      real(dp) :: rows(size(columns, 1), size(columns, 2))
+      integer :: j
 
+      rows = 0.0_dp
       do j = 1, size(columns, 2)
-         rows(:, j) = self%own*columns(:, j)
-         do i = 1, size(columns, 1)
-            if (self%partner(i) > 0) rows(i, j) = rows(i, j) + &
-               self%share(i)*columns(self%partner(i), j)
-         end do
-      end do
-      do j = 1, size(columns, 2)
-         of_arms = 0.0_dp
-         call self%arm%add_totals(columns(:, j), of_arms)
-         rows(self%closing, j) = rows(self%closing, j) + of_arms
+         call self%forces%add_totals(columns(:, j), rows(:, j))
       end do
    end function combine
-
-   !> Factors of forces in each free row.
-   pure function forces(self) result(list)
-      class(contact_rows_type), intent(in) :: self
-      type(sum_list_type) :: list                !! (tail, tail), empty where not free
-      integer :: closing(size(self%own)), i
-      logical :: is_free(size(self%own))
-
-      closing = 0
-      closing(self%closing) = [(i, i=1, size(self%closing))]
-      is_free = .false.
-      is_free(self%free) = .true.
-      call list%reserve(size(closing), 2*size(closing) + size(self%arm%value))
-      do i = 1, size(closing)
-         if (.not. is_free(i)) then
-            call list%add([integer ::], [real(dp) ::])
-         else if (closing(i) > 0) then
-            call list%add([i, self%arm%values_of(closing(i))], [self%own(i), &
-               self%arm%coefficients_of(closing(i))])
-         else
-            call list%add([i, self%partner(i)], [self%own(i), self%share(i)])
-         end if
-      end do
-   end function forces
 
    !> Whether rows have other factors, or only one of both is free.
    pure function differ(a, b)
       type(contact_rows_type), intent(in) :: a, b
-      logical :: differ(size(a%own))
-      integer, dimension(size(a%own)) :: in_a, in_b
-      logical, dimension(size(a%own)) :: is_free_a, is_free_b
+      logical, dimension(size(a%spring)) :: differ, is_free_a, is_free_b
       integer :: i
 
       is_free_a = .false.
       is_free_a(a%free) = .true.
       is_free_b = .false.
       is_free_b(b%free) = .true.
-      in_a = 0
-      in_a(a%closing) = [(i, i=1, size(a%closing))]
-      in_b = 0
-      in_b(b%closing) = [(i, i=1, size(b%closing))]
-      differ = a%partner /= b%partner .or. abs(a%share - b%share) > 0.0_dp .or. &
-         abs(a%own - b%own) > 0.0_dp .or. abs(a%spring - b%spring) > 0.0_dp .or. &
-         ((in_a > 0) .neqv. (in_b > 0))
+      differ = (is_free_a .neqv. is_free_b) .or. (is_free_a .and. abs(a%spring - b%spring) > 0.0_dp)
       do i = 1, size(differ)
-         if (in_a(i) > 0 .and. in_b(i) > 0) differ(i) = differ(i) .or. &
-            .not. a%arm%is_sum_of(in_a(i), b%arm, in_b(i))
+         if (.not. differ(i)) differ(i) = .not. a%forces%is_sum_of(i, b%forces, i)
       end do
-      differ = (is_free_a .neqv. is_free_b) .or. (is_free_a .and. differ)
    end function differ
 
    !> The unsupported motions that no row of the active set holds.

@@ -409,14 +409,12 @@ contains
       class(contact_workspace_type), intent(in) :: self  !! factors
       real(dp), intent(inout) :: x(:) !! (tail) factors of displacements in, those of forces out
       real(dp) :: in_rows(size(x))
-      type(sum_list_type) :: forces
 
       in_rows = 0.0_dp
       in_rows(self%rows%free) = x(self%rows%free)
       call self%factors%solve_transposed(in_rows)
-      forces = self%rows%forces()
       x = 0.0_dp
-      call forces%add_shares(in_rows, x)
+      call self%rows%forces%add_shares(in_rows, x)
    end subroutine solve_transposed
 
    !> Forces at some rows of the tail for unit displacements there, the free ones following; with
