@@ -7,7 +7,7 @@ module heat_reduction
    use errors, only: error_type
    use field_constraints, only: in_cycle, stiffness_alone
    use field_problem, only: field_reduction_type
-   use jump_loads, only: loads_by_elimination, loads_by_solves
+   use jump_loads, only: loads_by_elimination
    use kinds, only: dp
    use model, only: model_type
    use reduced_bodies, only: reduced_bodies_type
@@ -162,14 +162,7 @@ contains
       if (.not. has_kept_load(self, bodies)) call form_kept_load(self, bodies)
       if (self%is_on_demand(bodies)) return
       if (.not. has_friction_loads(self, bodies)) call form_friction(self, bodies)
-      if (.not. has_loads(self, bodies)) then
-         if (allocated(self%kept_load)) then
-            call form_jump_load(self, bodies)
-         else
-            call loads_by_solves(bodies%thermal, self, bodies%mechanical, bodies%equilibrium, &
-               bodies%thermal_load, self%jump_load)
-         end if
-      end if
+      if (.not. has_loads(self, bodies)) call form_jump_load(self, bodies)
       self%equilibrium = [bodies%mechanical%numbering, bodies%mechanical%values]
       if (self%is_balanced) return
       do k = 1, size(self%jump_load, 2)
@@ -344,7 +337,7 @@ contains
       end associate
    end subroutine form_kept_load
 
-   !> The loads of the jumps, balanced, where pieces keep what they depend on.
+   !> The loads of the jumps, balanced, from the responses to each.
    subroutine form_jump_load(self, bodies)
       class(heat_reduction_type), intent(inout) :: self
       type(reduced_bodies_type), intent(in) :: bodies
@@ -371,13 +364,13 @@ contains
       real(dp), allocatable :: forces(:, :)
       integer :: k
 
+      if (.not. allocated(self%kept_load)) then
+         load = loads_of_temperatures(bodies, temperature)
+         return
+      end if
       allocate (forces(bodies%thermal_load%row_count, size(load, 2)), source=0.0_dp)
       do k = 1, size(load, 2)
-         if (allocated(self%kept_load)) then
-            call self%add_kept_forces(temperature(:, k), forces(:, k))
-         else
-            forces(:, k) = bodies%thermal_load%multiply(temperature(:, k))
-         end if
+         call self%add_kept_forces(temperature(:, k), forces(:, k))
       end do
       call bodies%equilibrium%condense_kept(bodies%mechanical, forces, load)
       do k = 1, size(load, 2)

@@ -1,4 +1,4 @@
-!> Condensed mechanical loads of unit temperature jumps at the contact points.
+!> Condensed mechanical loads of unit temperature jumps at the contact points, by elimination.
 !>
 !> A unit temperature jump at a contact point has a condensed mechanical load: what (3.4) and (2.4)
 !> say of each other on the contact unknowns. With heat K_T T = q, equilibrium K_u u = f + B T, and
@@ -9,47 +9,23 @@
 !>    [ K_T  B^T ]
 !>    [ B    K_u ]
 !>
-!> for a B so small that its square is none beside K_T and K_u. An elimination that is better at
-!> many unknowns than at many right-hand sides takes that way.
+!> for a B so small that its square is none beside K_T and K_u. A solver that is better at many
+!> unknowns than at many right-hand sides takes that way; others take R (heat_reduction).
 module jump_loads
    use errors, only: error_type
-   use field_problem, only: field_problem_type, field_reduction_type
+   use field_problem, only: field_problem_type
    use kinds, only: dp
    use mumps_solver, only: schur_complement
    use ordering, only: adjacency, nested_dissection
    use sparse_matrix, only: linear_combination, sparse_matrix_type, triplet_list_type
    implicit none
    private
-   public :: loads_by_solves, loads_by_elimination
+   public :: loads_by_elimination
 
-   integer, parameter :: columns_at_once = 32   !! jumps whose responses are formed together
    !> Factor of B, a power of the base: the digits of the loads stay, their squares vanish.
    real(dp), parameter :: small = 2.0_dp**(-200)
 
 contains
-
-   !> The loads from the responses to each jump.
-   subroutine loads_by_solves(thermal, heat, mechanical, equilibrium, thermal_load, loads)
-      type(field_problem_type), intent(in) :: thermal            !! numbered
-      class(field_reduction_type), intent(in) :: heat            !! and reduced
-      type(field_problem_type), intent(in) :: mechanical         !! numbered
-      class(field_reduction_type), intent(in) :: equilibrium     !! and reduced
-      type(sparse_matrix_type), intent(in) :: thermal_load       !! B, forces per nodal temperature
-      real(dp), allocatable, intent(out) :: loads(:, :)    !! (mechanical tail, thermal tail)
-      real(dp), allocatable :: forces(:, :)
-      integer :: first, last, tail
-
-      tail = thermal%map%tail
-      allocate (loads(mechanical%map%tail, tail))
-      do first = 1, tail, columns_at_once
-         last = min(first + columns_at_once - 1, tail)
-         allocate (forces(thermal_load%row_count, last - first + 1))
-         call thermal_load%multiply_columns(heat%unit_responses(thermal, first, last), &
-            forces)
-         call equilibrium%condense_kept(mechanical, forces, loads(:, first:last))
-         deallocate (forces)
-      end do
-   end subroutine loads_by_solves
 
    !> The loads from one elimination of both fields, by MUMPS.
    !> Errors: as schur_complement; METIS fails.
