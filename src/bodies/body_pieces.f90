@@ -309,11 +309,12 @@ contains
 
    !> Forces on the kept degrees of freedom; those inside stay as they are, for fill.
    subroutine condense(self, forces)
-      class(body_pieces_type), intent(in) :: self    !! reduced
+      class(body_pieces_type), intent(in) :: self    !! reduced, or without any
       real(dp), intent(inout) :: forces(:)           !! (dofs) f
       real(dp), allocatable :: condensed(:, :), rhs(:, :)
       integer :: i
 
+      if (.not. allocated(self%piece)) return
       do i = 1, size(self%piece)
          associate (own => self%piece(i))
             allocate (rhs(own%solver%order, 1), condensed(size(own%around), 1))
@@ -330,12 +331,13 @@ contains
 
    !> Values inside of the pieces, from those of the kept degrees of freedom and the forces inside.
    subroutine fill(self, values, forces)
-      class(body_pieces_type), intent(in) :: self    !! reduced
+      class(body_pieces_type), intent(in) :: self    !! reduced, or without any
       real(dp), intent(inout) :: values(:)           !! (dofs) u_k in, u out
       real(dp), intent(in), optional :: forces(:)    !! (dofs) f, absent for none
       real(dp), allocatable :: on_tail(:, :), rhs(:, :), solution(:, :)
       integer :: i
 
+      if (.not. allocated(self%piece)) return
       do i = 1, size(self%piece)
          associate (own => self%piece(i))
             on_tail = reshape(values(own%around), [size(own%around), 1])

@@ -268,12 +268,8 @@ contains
       if (has_pieces(self, problem, added)) return
       associate (piece => problem%division%piece, kind => merge(solver_skyline, solver_kind, &
          problem%division%is_tail()))
-         if (allocated(added%value)) then
-            call self%pieces%reduce(linear_combination(1.0_dp, problem%matrix, 1.0_dp, added), &
-               piece, kind, kept, error)
-         else
-            call self%pieces%reduce(problem%matrix, piece, kind, kept, error)
-         end if
+         call self%pieces%reduce(linear_combination(1.0_dp, problem%matrix, 1.0_dp, added), &
+            piece, kind, kept, error)
       end associate
       if (allocated(error)) return
       self%division = problem%division%version
@@ -349,14 +345,8 @@ contains
       type(sparse_matrix_type), intent(in) :: added       !! (dofs, dofs), or without values
       type(sparse_matrix_type) :: lower                   !! (equations, equations)
 
-      associate (stiffness => self%map%link_stiffness(self%matrix))
-         if (allocated(added%value)) then
-            lower = self%map%transform(linear_combination(1.0_dp, self%matrix, 1.0_dp, added), &
-               stiffness)
-         else
-            lower = self%map%transform(self%matrix, stiffness)
-         end if
-      end associate
+      lower = self%map%transform(linear_combination(1.0_dp, self%matrix, 1.0_dp, added), &
+         self%map%link_stiffness(self%matrix))
    end function matrix_of_unknowns
 
    !> Forces less those of prescribed values that are no part of what pieces leave: on the pieces
@@ -517,7 +507,6 @@ contains
       integer :: k
 
       values = self%extended_to_kept(problem, on_tail)
-      if (.not. allocated(problem%division%piece)) return
       do k = 1, size(on_tail, 2)
          call self%pieces%fill(values(:, k))
       end do
@@ -583,10 +572,6 @@ contains
       real(dp), allocatable :: acting(:, :)
       integer :: k
 
-      if (.not. allocated(problem%division%piece)) then
-         call self%condense_kept(problem, forces, condensed, welded)
-         return
-      end if
       acting = forces
       do k = 1, size(forces, 2)
          call self%pieces%condense(acting(:, k))

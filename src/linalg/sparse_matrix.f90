@@ -181,6 +181,10 @@ contains
          combined = matrix_a
          combined%value = a*matrix_a%value + b*matrix_b%value
          return
+      else if (.not. allocated(matrix_b%value)) then
+         combined = matrix_a
+         if (allocated(matrix_a%value)) combined%value = a*matrix_a%value
+         return
       end if
       entries = 0
       if (allocated(matrix_a%value)) entries = size(matrix_a%value)
