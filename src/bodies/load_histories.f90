@@ -36,7 +36,6 @@ module load_histories
       procedure :: fade
       procedure :: remove
       procedure :: move_to
-      procedure :: follows
       procedure :: exchange
    end type load_history_type
 
@@ -164,13 +163,5 @@ contains
       self%start = unpack(start, self%active, self%start)
       self%target = unpack(target, self%active, self%target)
    end subroutine exchange
-
-   !> Whether any load follows an amplitude.
-   pure logical function follows(self, amplitude)
-      class(load_history_type), intent(in) :: self
-      integer, intent(in) :: amplitude
-
-      follows = any(self%active .and. self%amplitude == amplitude)
-   end function follows
 
 end module load_histories
