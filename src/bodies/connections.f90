@@ -41,6 +41,7 @@ module connections
    !> The contact points of all interfaces in one row, and what else joins nodes.
    type, extends(contact_row_type) :: connections_type
       integer, allocatable :: interface_start(:)     !! (interfaces + 1) first contact point of each
+      integer, allocatable :: interface(:)           !! (m) interface of each contact point
       !> (m, nodes) mean of both faces; no sums where no conductance law varies with the temperature
       type(sum_list_type) :: mean
       !> (n) contact points that friction may heat; unallocated without *GAP HEAT GENERATION
@@ -158,6 +159,7 @@ contains
          row%interface_start = [row%interface_start, row%interface_start(i) + &
             size(interfaces(i)%slave)]
       end do
+      row%interface = [(spread(i, 1, size(interfaces(i)%slave)), i=1, size(interfaces))]
       if (any(varies_with_temperature(model%interactions(model%contacts%interaction)%law))) then
          call row%mean%reserve(0, 0)
          do i = 1, size(interfaces)
@@ -218,12 +220,9 @@ contains
       type(tie_points_type) :: row
       integer :: i
 
+      call join_rows(of_tie%contact_row_type, row)
       row%tie = [(spread(i, 1, size(of_tie(i)%slave)), i=1, size(ties))]
-      row%slave = [(of_tie(i)%slave, i=1, size(ties))]
-      row%master = [(of_tie(i)%master, i=1, size(ties))]
-      row%weight = [(of_tie(i)%weight, i=1, size(ties))]
       allocate (row%is_opposite(0), row%is_linear(0))
-      call row%difference%reserve(0, 0)
       do i = 1, size(ties)
          associate (points => of_tie(i), &
             face => mesh%surfaces(ties(i)%faces%slave)%faces(:, 1))
@@ -232,7 +231,6 @@ contains
                opposite*points%edge]
             row%is_linear = [row%is_linear, spread(points%pairing /= pairing_nodes .and. &
                side_node_count(mesh%element_kind(face(1))) == 2, 1, size(points%slave))]
-            call row%difference%add_sums(points%difference)
          end associate
       end do
    end function joined_ties
@@ -326,23 +324,14 @@ contains
       type(connections_type), intent(in) :: points
       integer, intent(in) :: step
       type(contact_laws_type), intent(inout) :: laws
-      integer :: i
 
       if (.not. any(model%interactions(model%contacts%interaction)%wear%wears())) return
-      associate (m => size(points%weight))
-         allocate (laws%wear(m), laws%wear_share(m), laws%worn_part(m))
-      end associate
       laws%wear_count = 1.0_dp
       if (size(model%steps) > 0) laws%wear_count = model%steps(step)%wear_count
-      do i = 1, size(model%contacts)
-         associate (first => points%interface_start(i), last => points%interface_start(i + 1) - 1, &
-            law => model%interactions(model%contacts(i)%interaction)%wear)
-            laws%wear(first:last) = law
-            laws%wear_share(first:last) = law%slave_share
-            laws%worn_part(first:last) = merge(law%slave_share, 1.0_dp, &
-               model%contacts(i)%follows_sliding)
-         end associate
-      end do
+      laws%wear = model%interactions(model%contacts(points%interface)%interaction)%wear
+      laws%wear_share = laws%wear%slave_share
+      laws%worn_part = merge(laws%wear_share, 1.0_dp, &
+         model%contacts(points%interface)%follows_sliding)
    end subroutine take_wear
 
    !> The heat of friction. Faces that slide out of the plane have no friction in it.
@@ -351,14 +340,10 @@ contains
       type(connections_type), intent(in) :: points
       type(contact_laws_type), intent(inout) :: laws  !! with the friction of the step
       type(friction_heat_type) :: heat(size(points%weight))
-      integer :: i
 
       if (.not. any(model%interactions%heat%efficiency > 0.0_dp .or. &
          model%interactions%heat%leaves_plane())) return
-      do i = 1, size(model%contacts)
-         heat(points%interface_start(i):points%interface_start(i + 1) - 1) = &
-            model%interactions(model%contacts(i)%interaction)%heat
-      end do
+      heat = model%interactions(model%contacts(points%interface)%interaction)%heat
       where (heat%angular_velocity > 0.0_dp) &
          heat%speed = heat%angular_velocity*abs(model%mesh%coordinates(1, points%slave))
       if (allocated(points%heated)) then

@@ -175,7 +175,7 @@ contains
          rows = displacement_rows(loads%displacement%active, points, is_open)
          call name_origins(model, points, rows, loads%displacement, &
             row_origin_type(of_contact, k), others, supported)
-         i = count(points%interface_start <= k)
+         i = points%interface(k)
          call set_error(error, status_deck, model%contacts(i)%title()//': how slave node '// &
             to_text(number(points%slave(k)))//' moves against master node '// &
             to_text(number(points%master(k)))//' is prescribed by '//others//', and leaves no '// &

@@ -233,16 +233,12 @@ contains
       class(loads_type), intent(in) :: self
       type(connections_type), intent(in) :: points  !! all contact points
       real(dp) :: gap(size(points%initial_gap))            !! (m) h [length]
-      integer :: i, k
 
       gap = points%initial_gap
-      do i = 1, size(self%shrinks)
-         if (.not. self%interference%active(i)) cycle
-         do k = points%interface_start(i), points%interface_start(i + 1) - 1
-            gap(k) = gap(k) + self%interference%value(i)*merge(max(-points%initial_gap(k), &
-               0.0_dp), 1.0_dp, self%shrinks(i))
-         end do
-      end do
+      associate (i => points%interface)
+         where (self%interference%active(i)) gap = gap + self%interference%value(i)* &
+            merge(max(-gap, 0.0_dp), 1.0_dp, self%shrinks(i))
+      end associate
    end function present_gaps
 
    !> Nodal heat of sources and fluxes, and of films with the bodies at temperature zero: Q of

@@ -104,14 +104,11 @@ contains
       type(increment_data_type), intent(in) :: data
       real(dp) :: omega(size(data%equation%omega_old))
       real(dp), allocatable :: conductor(:)
-      integer :: i, k
+      integer :: k
 
       select case (kind)
       case (start_given)
-         do i = 1, size(bodies%interfaces)
-            omega(bodies%points%interface_start(i):bodies%points%interface_start(i + 1) - 1) = &
-               data%start%conductance(i)
-         end do
+         omega = data%start%conductance(bodies%points%interface)
       case (start_open, start_closed)
          omega = data%equation%omega_old
          conductor = heat%conductors(bodies)

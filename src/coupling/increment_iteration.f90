@@ -183,16 +183,15 @@ contains
       real(dp), intent(in) :: jump(:)
       type(solution_report_type), intent(inout) :: record
       type(error_type), intent(inout) :: error
-      integer :: i, k
+      integer :: k
 
       if (.not. runs_away(bodies, jump)) return
       k = findloc(ieee_is_finite(jump), .false., dim=1)
       if (k == 0) k = maxloc(abs(jump), dim=1)
-      i = count(bodies%points%interface_start <= k)
-      record%runaway = 'thermal runaway in contact pair '//bodies%interfaces(i)%name// &
-         ': the heat that crosses its gap widens it, and the wider gap needs hotter bodies, '// &
-         'without limit (thermal strains above 1); a steady state needs less heat, a smaller '// &
-         'gap or better conduction'
+      record%runaway = 'thermal runaway in contact pair '// &
+         bodies%interfaces(bodies%points%interface(k))%name//': the heat that crosses its gap '// &
+         'widens it, and the wider gap needs hotter bodies, without limit (thermal strains '// &
+         'above 1); a steady state needs less heat, a smaller gap or better conduction'
       error%message = record%runaway
    end subroutine name_runaway
 

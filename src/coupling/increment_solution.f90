@@ -212,12 +212,8 @@ contains
       type(solution_state_type), intent(inout) :: state
       real(dp), dimension(size(state%omega)) :: jump, normal, tangential
       logical :: moves(size(state%omega))
-      integer :: i
 
-      do i = 1, size(bodies%interfaces)
-         moves(bodies%points%interface_start(i):bodies%points%interface_start(i + 1) - 1) = &
-            bodies%interfaces(i)%follows_sliding
-      end do
+      moves = bodies%interfaces(bodies%points%interface)%follows_sliding
       tangential = tangential_positions(bodies%points, bodies%held_direction, state%displacement)
       normal = sum(bodies%points%normal*bodies%points%relative(state%displacement), dim=1)
       jump = bodies%points%jumps(state%temperature)
@@ -335,12 +331,10 @@ contains
       if (.not. allocated(workspace%faces)) return
       k = findloc(is_below_zero(bodies%laws%conductance, workspace%faces), .true., dim=1)
       if (k == 0) return
-      associate (i => count(bodies%points%interface_start <= k))
-         call set_error(error, status_no_convergence, 'contact pair '// &
-            bodies%interfaces(i)%name//' radiates below absolute zero, '// &
-            to_text(bodies%laws%conductance(k)%by_temperature%absolute_zero)// &
-            '; check ABSOLUTE ZERO= of *PHYSICAL CONSTANTS and the temperatures of the deck')
-      end associate
+      call set_error(error, status_no_convergence, 'contact pair '// &
+         bodies%interfaces(bodies%points%interface(k))%name//' radiates below absolute zero, '// &
+         to_text(bodies%laws%conductance(k)%by_temperature%absolute_zero)// &
+         '; check ABSOLUTE ZERO= of *PHYSICAL CONSTANTS and the temperatures of the deck')
    end subroutine check_absolute_zero
 
    !> An increment explicit in omega: temperatures by the conductance at its start, then mechanics,

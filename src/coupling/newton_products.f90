@@ -221,10 +221,7 @@ contains
       allocate (own(size(place)), source=0.0_dp)
       allocate (body(size(place)), source=1.0_dp)
       associate (start => bodies%points%interface_start, workspace => trial%workspace)
-         do i = 1, size(start) - 1
-            place(start(i):start(i + 1) - 1) = [(modulo(k - start(i), apart), k=start(i), &
-               start(i + 1) - 1)]
-         end do
+         place = [(modulo(k - start(bodies%points%interface(k)), apart), k=1, size(place))]
          do i = 0, maxval(place)
             call find_changes(bodies, heat, trial, tangent, merge(1.0_dp, 0.0_dp, place == i), &
                of_tail, change)

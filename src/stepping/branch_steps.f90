@@ -89,8 +89,8 @@ contains
       ! Slip that reverses depends on the way to a point.
       k = findloc(self%contact%direction*self%direction < 0, .true., dim=1)
       if (k > 0) call set_error(error, status_no_convergence, &
-         'friction reverses in contact pair '//bodies%interfaces(count( &
-         bodies%points%interface_start <= k))%name//' at load factor '//to_text( &
+         'friction reverses in contact pair '//bodies%interfaces( &
+         bodies%points%interface(k))%name//' at load factor '//to_text( &
          self%point%factor)//', and a solution behind that depends on the way to it; end '// &
          'the branch before, by HIGHEST= or LOWEST= of *CONTINUATION, or leave out friction')
    end subroutine find_point
