@@ -9,7 +9,7 @@ module node_pairs
    use interface_checks, only: check_sides
    use kinds, only: dp
    use mesh, only: mesh_type
-   use sum_lists, only: differences, single_values, sum_list_type
+   use sum_lists, only: differences, single_values
    use surface_chains, only: surface_chain_type
    use text, only: to_text
    implicit none
@@ -186,8 +186,6 @@ contains
    pure subroutine keep_points(kept, points)
       integer, intent(in) :: kept(:)
       type(contact_points_type), intent(inout) :: points
-      type(sum_list_type) :: difference
-      integer :: k
 
       points%slave = points%slave(kept)
       points%master = points%master(kept)
@@ -198,13 +196,7 @@ contains
       points%tangent = points%tangent(:, kept)
       points%initial_gap = points%initial_gap(kept)
       points%edge = points%edge(kept)
-      if (points%difference%count == 0) return
-      call difference%reserve(size(kept), size(points%difference%value))
-      do k = 1, size(kept)
-         call difference%add(points%difference%values_of(kept(k)), &
-            points%difference%coefficients_of(kept(k)))
-      end do
-      points%difference = difference
+      if (points%difference%count > 0) points%difference = points%difference%chosen(kept)
    end subroutine keep_points
 
 end module node_pairs

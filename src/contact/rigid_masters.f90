@@ -166,7 +166,10 @@ contains
       points%master_mean = at_reference(points%master_mean)
       points%master = drawing%reference
       points%is_rigid = .true.
-      call keep_face_nodes(points%face_node <= last, points)
+      associate (kept => points%face_node <= last)
+         points%at_face_nodes = points%at_face_nodes%chosen(pack([(k, k=1, size(kept))], kept))
+         points%face_node = pack(points%face_node, kept)
+      end associate
       if (.not. allocated(points%mortar%segments)) return
       do k = 1, size(points%mortar%segments)
          call join_drawn(drawing%reference, last, points%mortar%segments(k))
@@ -188,22 +191,6 @@ contains
          end do
       end function at_reference
    end subroutine follow_reference
-
-   !> Keeps the contact quantities of some nodes of the faces.
-   pure subroutine keep_face_nodes(kept, points)
-      logical, intent(in) :: kept(:)
-      type(contact_points_type), intent(inout) :: points
-      type(sum_list_type) :: sums
-      integer :: i
-
-      call sums%reserve(count(kept), size(points%at_face_nodes%value))
-      do i = 1, size(kept)
-         if (kept(i)) call sums%add(points%at_face_nodes%values_of(i), &
-            points%at_face_nodes%coefficients_of(i))
-      end do
-      points%at_face_nodes = sums
-      points%face_node = pack(points%face_node, kept)
-   end subroutine keep_face_nodes
 
    !> Puts the reference node in the place of all nodes of the drawing in a segment.
    pure subroutine join_drawn(reference, last, segment)

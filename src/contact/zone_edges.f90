@@ -34,7 +34,7 @@ module zone_edges
    implicit none
    private
    public :: contact_profile_type, contact_profile, contact_edges, contact_end
-   public :: edges_kept, mean_beyond, piece_of, stick_edges, turned
+   public :: edges_kept, mean_beyond, some_of, stick_edges, turned
 
    integer, parameter :: edges_kept = 4     !! zone edges kept for an interface
 
@@ -82,20 +82,20 @@ contains
       if (allocated(points%cuts)) profile%cuts = points%cuts
    end function contact_profile
 
-   !> The profile of a piece, as the only one.
-   pure function piece_of(profile, first, last) result(piece)
+   !> Some contact points of a profile, as those of the only piece.
+   pure function some_of(profile, which) result(some)
       type(contact_profile_type), intent(in) :: profile
-      integer, intent(in) :: first, last        !! its first and its last contact point
-      type(contact_profile_type) :: piece
+      integer, intent(in) :: which(:)           !! the contact points
+      type(contact_profile_type) :: some
 
-      piece%s = profile%s(first:last)
-      piece%weight = profile%weight(first:last)
-      piece%contact_state = profile%contact_state(first:last)
-      piece%pressure = profile%pressure(first:last)
-      piece%shear = profile%shear(first:last)
-      piece%gap = profile%gap(first:last)
-      piece%hat_spacings = profile%hat_spacings
-   end function piece_of
+      some%s = profile%s(which)
+      some%weight = profile%weight(which)
+      some%contact_state = profile%contact_state(which)
+      some%pressure = profile%pressure(which)
+      some%shear = profile%shear(which)
+      some%gap = profile%gap(which)
+      some%hat_spacings = profile%hat_spacings
+   end function some_of
 
    !> Edges between contact and gap, ascending, padded with NaN, and the outer edge of the contact
    !> zone with the largest s. A zone that reaches the last contact point ends there; that end is no
@@ -104,7 +104,7 @@ contains
       type(contact_profile_type), intent(in) :: profile
       real(dp), intent(out) :: edges(edges_kept)   !! edges as s [length]
       real(dp), intent(out) :: outer               !! outer edge, NaN without contact [length]
-      integer :: found, i
+      integer :: found, i, k
       integer, allocatable :: ends(:)
 
       found = 0
@@ -112,7 +112,7 @@ contains
       outer = edges(1)
       ends = ends_of_pieces(size(profile%s), profile%cuts)
       do i = 1, size(ends), 2
-         call add_contact_edges(piece_of(profile, ends(i), ends(i + 1)), edges, found, outer)
+         call add_contact_edges(some_of(profile, [(k, k=ends(i), ends(i + 1))]), edges, found, outer)
       end do
    end subroutine contact_edges
 
@@ -149,16 +149,10 @@ contains
    pure function turned(profile) result(back)
       type(contact_profile_type), intent(in) :: profile
       type(contact_profile_type) :: back
-      integer :: m
+      integer :: k
 
-      m = size(profile%s)
-      back%s = -profile%s(m:1:-1)
-      back%weight = profile%weight(m:1:-1)
-      back%contact_state = profile%contact_state(m:1:-1)
-      back%pressure = profile%pressure(m:1:-1)
-      back%shear = profile%shear(m:1:-1)
-      back%gap = profile%gap(m:1:-1)
-      back%hat_spacings = profile%hat_spacings
+      back = some_of(profile, [(k, k=size(profile%s), 1, -1)])
+      back%s = -back%s
    end function turned
 
    !> Edge between closed contact point k and open contact point k + 1.
@@ -292,7 +286,7 @@ contains
       real(dp), intent(out) :: edges(edges_kept)   !! edges as s [length]
       real(dp), intent(out) :: outer               !! outer edge, NaN without stick [length]
       real(dp) :: widest
-      integer :: found, i
+      integer :: found, i, k
       integer, allocatable :: ends(:)
 
       found = 0
@@ -301,8 +295,8 @@ contains
       outer = edges(1)
       ends = ends_of_pieces(size(profile%s), profile%cuts)
       do i = 1, size(ends), 2
-         call add_stick_edges(piece_of(profile, ends(i), ends(i + 1)), friction, edges, found, &
-            outer, widest)
+         call add_stick_edges(some_of(profile, [(k, k=ends(i), ends(i + 1))]), friction, edges, &
+            found, outer, widest)
       end do
    end subroutine stick_edges
 

@@ -23,7 +23,7 @@ module edge_heat
    use reduced_bodies, only: reduced_bodies_type
    use sum_lists, only: sum_list_type
    use zone_edges, only: contact_end, contact_profile, contact_profile_type, mean_beyond, &
-      piece_of, turned
+      some_of, turned
    implicit none
    private
    public :: edge_integral_type, edge_heat_type, find_edge_integrals, edge_heat_at
@@ -296,7 +296,7 @@ contains
       allocate (edges%own(size(opening)), source=1.0_dp)
       ends = points%ends()
       do i = 1, size(ends), 2
-         piece = piece_of(profile, ends(i), ends(i + 1))
+         piece = some_of(profile, [(k, k=ends(i), ends(i + 1))])
          do k = ends(i), ends(i + 1) - 1
             if (count(profile%contact_state(k:k + 1) == contact_open) == 1) edges%sides(k)%along = &
                edge_between(law, piece, k + 1 - ends(i))
@@ -388,18 +388,15 @@ contains
       class(edge_heat_type), intent(in) :: self
       logical, intent(in) :: left_out(:)        !! (m)
       type(edge_heat_type) :: kept
-      logical, allocatable :: stays(:)
+      integer, allocatable :: stay(:)
       integer :: i
 
       if (.not. allocated(self%point)) return
-      stays = .not. left_out(self%point)
-      kept%point = pack(self%point, stays)
-      kept%conductance = pack(self%conductance, stays)
-      kept%own = pack(self%own, stays)
-      call kept%jump%reserve(size(stays), size(self%jump%value))
-      do i = 1, size(stays)
-         if (stays(i)) call kept%jump%add(self%jump%values_of(i), self%jump%coefficients_of(i))
-      end do
+      stay = pack([(i, i=1, size(self%point))], .not. left_out(self%point))
+      kept%point = self%point(stay)
+      kept%conductance = self%conductance(stay)
+      kept%own = self%own(stay)
+      kept%jump = self%jump%chosen(stay)
    end function without
 
    !> Conductances of the contact points, at edges the mean ones.

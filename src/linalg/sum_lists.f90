@@ -16,6 +16,7 @@ module sum_lists
       procedure :: add
       procedure :: add_value
       procedure :: add_sums
+      procedure :: chosen
       procedure :: renumbered
       procedure :: transposed
       procedure :: as_columns
@@ -127,6 +128,19 @@ contains
          call self%add(sums%values_of(i), sums%coefficients_of(i))
       end do
    end subroutine add_sums
+
+   !> Some of the sums.
+   pure function chosen(self, which) result(sums)
+      class(sum_list_type), intent(in) :: self
+      integer, intent(in) :: which(:)           !! (n) the sums
+      type(sum_list_type) :: sums               !! (n)
+      integer :: i
+
+      call sums%reserve(size(which), size(self%value))
+      do i = 1, size(which)
+         call sums%add(self%values_of(which(i)), self%coefficients_of(which(i)))
+      end do
+   end function chosen
 
    !> The sums with values of other numbers, without the terms whose value has none.
    pure function renumbered(self, number) result(sums)
