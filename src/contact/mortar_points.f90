@@ -9,10 +9,10 @@ module mortar_points
    use mortar_segments, only: edge_segments_of, hats_of, integrate_segments, mortar_integrals_type
    use kinds, only: dp
    use mesh, only: mesh_type
-   use mortar_sides, only: beside_line, face_line_type, hats, opposite_at, opposite_coordinate, &
-      slave_side_type, sides_of
+   use mortar_sides, only: beside_line, face_line_type, hats, line_of, opposite_at, &
+      opposite_coordinate, slave_side_type, sides_of
    use sparse_matrix, only: sparse_matrix_type
-   use sum_lists, only: sum_list_type
+   use sum_lists, only: add_terms, sum_list_type
    use surface_chains, only: surface_chain_type
    implicit none
    private
@@ -35,14 +35,6 @@ module mortar_points
       type(surface_chain_type), allocatable :: slaves(:), masters(:)
    end type other_chains_type
 
-   !> A sum of nodal values.
-   type :: nodal_sum_type
-      integer :: count = 0                  !! terms
-      integer, allocatable :: nodes(:)      !! their nodes, with room
-      real(dp), allocatable :: share(:)     !! their coefficients, likewise
-      integer, allocatable :: place(:)      !! (nodes) term of each, 0 for none
-   end type nodal_sum_type
-
 contains
 
    !> The contact points of two lines of nodes; none where no face of the master is opposite, or
@@ -60,15 +52,15 @@ contains
       integer, allocatable :: corner(:), owner(:), kept(:), point_of(:)
       integer :: c
 
-      slave_line = line_of(slave)
-      master_line = line_of(master)
+      slave_line = line_of(mesh, slave)
+      master_line = line_of(mesh, master)
       master_line%leads = points%follows_sliding
       side = sides_of(slave_line, master_line)
       do c = 1, size(others%masters)
-         call hide_segments(side, master_line, line_of(others%masters(c)), .true.)
+         call hide_segments(side, master_line, line_of(mesh, others%masters(c)), .true.)
       end do
       do c = 1, size(others%slaves)
-         call hide_segments(side, master_line, line_of(others%slaves(c)), .false.)
+         call hide_segments(side, master_line, line_of(mesh, others%slaves(c)), .false.)
       end do
       call integrate_segments(slave_line, master_line, side, thickness, points%about_axis, &
          integrals)
@@ -111,14 +103,6 @@ contains
 
          depth_of = chord_depth(mesh%coordinates(:, chain%nodes), chain%side_nodes, chain%closed)
       end function depth_of
-
-      function line_of(chain) result(line)
-         type(surface_chain_type), intent(in) :: chain
-         type(face_line_type) :: line
-
-         line = face_line_type(mesh%coordinates(:, chain%nodes), chain%side_nodes, chain%closed, &
-            merge(-1.0_dp, 1.0_dp, chain%turned))
-      end function line_of
    end subroutine set_mortar_points
 
    !> Mean distance of the master along the normal. From the contact point on, because the rounding
@@ -212,31 +196,25 @@ contains
          integer, intent(in) :: signs(2)               ! of slave and master: 1, 0 or -1
          real(dp), intent(in) :: least                 ! coefficient that is not rounding
          type(sum_list_type) :: sums
-         type(nodal_sum_type) :: total
+         real(dp), allocatable :: share(:)
+         integer, allocatable :: nodes(:)
          integer :: c, i, k
 
-         associate (most => size(slave%nodes) + size(master%nodes))
-            allocate (total%nodes(most), total%share(most))
-         end associate
-         allocate (total%place(max(maxval(slave%nodes), maxval(master%nodes))), source=0)
          call sums%reserve(size(kept), size(kept)*2*(slave%side_nodes + master%side_nodes))
          do k = 1, size(kept)
             ! The corner's own node comes first.
-            total%count = 0
-            call add_term(points%slave(k), 0.0_dp, total)
+            nodes = points%slave(k:k)
+            share = [0.0_dp]
             do c = 1, size(owner)
                if (owner(c) /= kept(k)) cycle
                do i = 1, size(of_slave)
-                  call add_row(of_slave(i), c, slave%nodes, signs(1)*factor(i, k), total)
-                  call add_row(of_master(i), c, master%nodes, signs(2)*factor(i, k), total)
+                  call add_row(of_slave(i), c, slave%nodes, signs(1)*factor(i, k), nodes, share)
+                  call add_row(of_master(i), c, master%nodes, signs(2)*factor(i, k), nodes, share)
                end do
             end do
-            associate (nodes => total%nodes(:total%count), share => total%share(:total%count))
-               total%place(nodes) = 0
-               share = share/points%weight(k)
-               where (abs(share) <= least) share = 0.0_dp
-               call sums%add(nodes, share)
-            end associate
+            share = share/points%weight(k)
+            where (abs(share) <= least) share = 0.0_dp
+            call sums%add(nodes, share)
          end do
       end function means
    end subroutine set_means
@@ -269,34 +247,18 @@ contains
    end subroutine set_face_nodes
 
    !> Adds a multiple of a row of a matrix to a sum of nodal values.
-   pure subroutine add_row(matrix, row, node, factor, total)
+   pure subroutine add_row(matrix, row, node, factor, nodes, share)
       type(sparse_matrix_type), intent(in) :: matrix
       integer, intent(in) :: row, node(:)
       real(dp), intent(in) :: factor
-      type(nodal_sum_type), intent(inout) :: total
-      integer :: k
+      integer, allocatable, intent(inout) :: nodes(:)
+      real(dp), allocatable, intent(inout) :: share(:)
 
-      do k = matrix%row_start(row), matrix%row_start(row + 1) - 1
-         call add_term(node(matrix%column(k)), factor*matrix%value(k), total)
-      end do
-   end subroutine add_row
-
-   !> Adds a multiple of the value of one node.
-   pure subroutine add_term(node, coefficient, total)
-      integer, intent(in) :: node
-      real(dp), intent(in) :: coefficient
-      type(nodal_sum_type), intent(inout) :: total
-
-      if (total%place(node) == 0) then
-         total%count = total%count + 1
-         total%place(node) = total%count
-         total%nodes(total%count) = node
-         total%share(total%count) = 0.0_dp
-      end if
-      associate (share => total%share(total%place(node)))
-         share = share + coefficient
+      associate (first => matrix%row_start(row), last => matrix%row_start(row + 1) - 1)
+         call add_terms(node(matrix%column(first:last)), factor*matrix%value(first:last), nodes, &
+            share)
       end associate
-   end subroutine add_term
+   end subroutine add_row
 
    !> Sums over the contact points that give each node of both faces its contact quantities: linear
    !> along each side of the slave, as the multipliers are; at a node of the master those of the

@@ -63,13 +63,10 @@ module mortar_segments
    end type mortar_integrals_type
 
    !> Sums so far.
-   type :: segment_sums_type
-      real(dp), allocatable :: weight(:), whole(:)
+   type, extends(mortar_integrals_type) :: segment_sums_type
       real(dp), allocatable :: apart(:)       !! (corners) from the covered part, as a coordinate
-      real(dp), allocatable :: position(:, :), beyond(:)   !! of mortar_integrals_type
-      !> (2, corners) normals of slave and master there
-      real(dp), allocatable :: normal(:, :), facing(:, :)
-      type(triplet_list_type) :: slave(0:2), master(0:2)   !! without n, with its components
+      real(dp), allocatable :: facing(:, :)   !! (2, corners) normal of the master; the other: slave
+      type(triplet_list_type) :: of_slave(0:2), of_master(0:2)   !! without n, with its components
    end type segment_sums_type
 
    integer, parameter :: support = 4           !! values of a cubic
@@ -143,8 +140,8 @@ contains
          segments(s) = size(side(s)%kinks) - 1
       end do
       do k = 0, 2
-         call sums%slave(k)%reserve(2*slave%side_nodes*sum(segments))
-         call sums%master(k)%reserve(2*master%side_nodes*sum(segments))
+         call sums%of_slave(k)%reserve(2*slave%side_nodes*sum(segments))
+         call sums%of_master(k)%reserve(2*master%side_nodes*sum(segments))
       end do
       section = merge(0.0_dp, thickness, about_axis)
       do s = 1, size(side)
@@ -152,19 +149,16 @@ contains
             call add_segment(side(s), k, master, master_normal, section, sums)
          end do
       end do
-      integrals%weight = sums%weight
-      integrals%whole = sums%whole
-      integrals%position = sums%position
-      integrals%beyond = sums%beyond
+      integrals = sums%mortar_integrals_type
       integrals%normal = sums%normal - sums%facing
       do k = 1, corners
          integrals%normal(:, k) = integrals%normal(:, k)/norm2(integrals%normal(:, k))
       end do
-      integrals%slave = sums%slave(0)%compress(corners, size(slave%x, 2))
-      integrals%master = sums%master(0)%compress(corners, size(master%x, 2))
+      integrals%slave = sums%of_slave(0)%compress(corners, size(slave%x, 2))
+      integrals%master = sums%of_master(0)%compress(corners, size(master%x, 2))
       do k = 1, 2
-         integrals%slave_normal(k) = sums%slave(k)%compress(corners, size(slave%x, 2))
-         integrals%master_normal(k) = sums%master(k)%compress(corners, size(master%x, 2))
+         integrals%slave_normal(k) = sums%of_slave(k)%compress(corners, size(slave%x, 2))
+         integrals%master_normal(k) = sums%of_master(k)%compress(corners, size(master%x, 2))
       end do
    end subroutine integrate_segments
 
@@ -224,8 +218,8 @@ contains
       end do
       if (side%opposite(segment) == 0) return
       do k = 0, 2
-         call sums%slave(k)%add_block(side%corners, side%nodes, of_slave(:, :, k))
-         call sums%master(k)%add_block(side%corners, facing, of_master(:, :, k))
+         call sums%of_slave(k)%add_block(side%corners, side%nodes, of_slave(:, :, k))
+         call sums%of_master(k)%add_block(side%corners, facing, of_master(:, :, k))
       end do
       call find_positions(side, segment, x, facing_normal, master%leads, sums)
    end subroutine add_segment

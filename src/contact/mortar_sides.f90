@@ -2,11 +2,13 @@
 module mortar_sides
    use chain_geometry, only: chain_tangents, side_positions, side_total, two_pi
    use kinds, only: dp
+   use mesh, only: mesh_type
    use shape_functions, only: side_shape, side_slope
+   use surface_chains, only: surface_chain_type
    implicit none
    private
    public :: face_line_type, slave_side_type
-   public :: beside_line, hats, insert_kinks, no_segment, oppose, opposite_at, &
+   public :: beside_line, hats, insert_kinks, line_of, no_segment, oppose, opposite_at, &
       opposite_coordinate, outward_normals, project, sides_of
 
    real(dp), parameter :: no_segment = 1.0e-12_dp   !! part of a side that is rounding
@@ -35,6 +37,16 @@ module mortar_sides
    end type slave_side_type
 
 contains
+
+   !> The line of the nodes of a surface.
+   pure function line_of(mesh, chain) result(line)
+      type(mesh_type), intent(in) :: mesh
+      type(surface_chain_type), intent(in) :: chain
+      type(face_line_type) :: line            !! as a master that does not lead
+
+      line = face_line_type(mesh%coordinates(:, chain%nodes), chain%side_nodes, chain%closed, &
+         merge(-1.0_dp, 1.0_dp, chain%turned))
+   end function line_of
 
    !> The sides of the slave, with the normals of their nodes and their segments.
    pure function sides_of(slave, master) result(side)

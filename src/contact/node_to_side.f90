@@ -10,8 +10,8 @@ module node_to_side
    use errors, only: error_type
    use kinds, only: dp
    use mesh, only: mesh_type
-   use mortar_sides, only: face_line_type, opposite_at, outward_normals, project, sides_of, &
-      slave_side_type
+   use mortar_sides, only: face_line_type, line_of, opposite_at, outward_normals, project, &
+      sides_of, slave_side_type
    use node_pairs, only: set_node_pairs
    use rigid_masters, only: add_points
    use shape_functions, only: side_shape
@@ -112,15 +112,6 @@ contains
       if (opposite == 0) opposite = opposite_at(side, max(xi - 2*end_reach, -1.0_dp))
       if (opposite == 0) opposite = opposite_at(side, min(xi + 2*end_reach, 1.0_dp))
    end function opposite_near
-
-   pure function line_of(mesh, chain) result(line)
-      type(mesh_type), intent(in) :: mesh
-      type(surface_chain_type), intent(in) :: chain
-      type(face_line_type) :: line
-
-      line = face_line_type(mesh%coordinates(:, chain%nodes), chain%side_nodes, chain%closed, &
-         merge(-1.0_dp, 1.0_dp, chain%turned))
-   end function line_of
 
    !> Gives contact points the nodes of the master's sides; its nodes have contact quantities
    !> between those of the contact points beside them.
