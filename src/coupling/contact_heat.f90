@@ -237,7 +237,7 @@ contains
    end function tail_of_heats
 
    !> Changes of the conductances with the laws' own changes dW: domega = dW + (dW/domega) domega.
-   function with_temperatures(bodies, heat, workspace, coordinate, rate, change, friction) &
+   function with_temperatures(bodies, heat, workspace, coordinate, rate, change, tangent) &
       result(of_omega)
       type(reduced_bodies_type), intent(in) :: bodies
       type(heat_reduction_type), intent(in) :: heat
@@ -245,8 +245,8 @@ contains
       real(dp), intent(in) :: coordinate(:)                    !! (m) z [length]
       real(dp), intent(in) :: rate(:)                          !! (m) as from heat_by_omega
       real(dp), intent(in) :: change(:)                        !! (m) dW
-      !> of heat that follows; absent where it stays
-      type(friction_tangent_type), intent(in), optional :: friction
+      !> of the contact, whose heat of friction follows; absent where that stays
+      type(friction_tangent_type), intent(in), optional :: tangent
       real(dp) :: of_omega(size(change)), part(size(change), 1)
       real(dp), allocatable :: load(:, :), of_tail(:, :)
       type(gmres_type) :: gmres
@@ -256,9 +256,11 @@ contains
       call gmres%begin(change, solved, min(size(change), most_products))
       do while (gmres%wants_product)
          of_tail = tail_of_heats(bodies, workspace, rate*gmres%vector)
-         if (present(friction)) then
-            load = heat%loads_of_tail(bodies, of_tail)
-            call friction%follow(bodies, heat, workspace, of_tail, load)
+         if (present(tangent)) then
+            if (tangent%makes_heat) then
+               load = heat%loads_of_tail(bodies, of_tail)
+               call tangent%follow(bodies, heat, workspace, of_tail, load)
+            end if
          end if
          part = changes_by_temperature(bodies, heat, workspace, coordinate, of_tail)
          call gmres%take(gmres%vector - part(:, 1))
@@ -273,23 +275,12 @@ contains
       type(increment_data_type), intent(in) :: data
       real(dp), intent(in) :: jump(:)                            !! (m) T_xi - T_eta [temperature]
       type(increment_workspace_type), intent(inout) :: workspace !! receives faces and laws
-      integer :: k
 
       if (.not. allocated(workspace%faces)) allocate (workspace%faces(size(jump)))
-      associate (faces => workspace%faces)
-         faces%mean = data%welded_mean
+      associate (faces => workspace%faces, by_tail => heat%means_of_tail(bodies, &
+         reshape(workspace%on_tail, [size(workspace%on_tail), 1])))
+         faces%mean = data%welded_mean + by_tail(:, 1)
          faces%jump = jump
-         if (heat%schur%is_sparse()) then
-            associate (by_tail => heat%means_of_tail(bodies, reshape(workspace%on_tail, &
-               [size(workspace%on_tail), 1])))
-               faces%mean = faces%mean + by_tail(:, 1)
-            end associate
-         else
-            do k = 1, size(jump)
-               if (bodies%jump_index(k) > 0) faces%mean = faces%mean + &
-                  heat%jump_mean(:, bodies%jump_index(k))*jump(k)
-            end do
-         end if
          if (allocated(workspace%friction%heat) .and. .not. heat%schur%is_sparse()) then
             faces%mean = faces%mean + matmul(heat%friction_mean, &
                workspace%friction%parts(2, :)*workspace%friction%heat)
@@ -350,44 +341,22 @@ contains
       end if
    end function log_ratio
 
-   !> Newton's step of log omega; towards the values wanted where there is none. With changes
-   !> W dlog omega for unknowns its equation is that of with_temperatures, which a sparse tail has.
+   !> Newton's step of log omega: with changes W dlog omega for unknowns its equation is that of
+   !> with_temperatures.
    function newton_step(bodies, heat, data, workspace, jump, wanted) result(step)
       type(reduced_bodies_type), intent(in) :: bodies
       type(heat_reduction_type), intent(in) :: heat
       type(increment_data_type), intent(in) :: data
       type(increment_workspace_type), intent(in) :: workspace
       real(dp), intent(in) :: jump(:), wanted(:)            ! wanted: (m) W
-      real(dp) :: step(size(wanted))
-      real(dp), allocatable :: matrix(:, :), rest(:, :)
-      real(dp), dimension(size(wanted)) :: rate, scale
-      type(jump_derivatives_type) :: by_omega
-      type(lu_type) :: lu
-      logical :: singular
-      integer :: k
+      real(dp), dimension(size(wanted)) :: rate, scale, step
 
-      associate (omega => workspace%pass%omega, coordinate => workspace%pass%coordinate)
-         step = log_ratio(wanted, omega)
-         if (heat%schur%is_sparse()) then
-            scale = merge(wanted, 1.0_dp, wanted > 0.0_dp .and. omega > 0.0_dp)
-            rate = merge(heat_by_omega(bodies, data, workspace, jump)*omega/scale, 0.0_dp, &
-               wanted > 0.0_dp)
-            step = with_temperatures(bodies, heat, workspace, coordinate, rate, scale*step)/scale
-         else
-            call jump_derivatives(bodies, data, workspace, jump, by_omega)
-            matrix = -derivative_by_temperature(bodies, heat, workspace, coordinate, by_omega)
-            do k = 1, size(omega)
-               matrix(:, k) = matrix(:, k)*omega(k)/max(wanted, tiny(1.0_dp))
-            end do
-            do k = 1, size(omega)
-               if (wanted(k) <= 0.0_dp .or. omega(k) <= 0.0_dp) matrix(k, :) = 0.0_dp
-               matrix(k, k) = matrix(k, k) + 1.0_dp
-            end do
-            rest = reshape(step, [size(step), 1])
-            call lu%factor(matrix, singular)
-            if (.not. singular) call lu%solve(rest)
-            step = rest(:, 1)
-         end if
+      associate (omega => workspace%pass%omega)
+         scale = merge(wanted, 1.0_dp, wanted > 0.0_dp .and. omega > 0.0_dp)
+         rate = merge(heat_by_omega(bodies, data, workspace, jump)*omega/scale, 0.0_dp, &
+            wanted > 0.0_dp)
+         step = with_temperatures(bodies, heat, workspace, workspace%pass%coordinate, rate, &
+            scale*log_ratio(wanted, omega))/scale
       end associate
       step = min(max(step, -longest_step), longest_step)
    end function newton_step

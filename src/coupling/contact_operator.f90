@@ -6,7 +6,7 @@
 !> history with d = weight (a2 omega_i + a3 omega)/a1; the condensed load follows by J dtheta, gaps
 !> and forces by the contact system with the conditions that hold.
 module contact_operator
-   use closing_instant, only: contact_change_type, contact_response, make_tangent, solve_increment
+   use closing_instant, only: contact_change_type, contact_response, solve_increment
    use conductance_graph, only: conductance_graph_type
    use conductance_laws, only: conductance, conductance_derivative, conductance_law_type
    use contact_heat, only: changes_by_temperature, jump_derivatives_type, settle_conductance, &
@@ -285,13 +285,12 @@ contains
       integer :: k
 
       allocate (graph(size(weight)))
+      graph%law = bodies%laws%conductance
       weight = bodies%points%weight
       where (weight <= 0.0_dp) weight = maxval(weight)
-      do k = 1, size(weight)
-         stiffness(k) = bodies%equilibrium%contact%alone(k)
-         graph(k)%law = bodies%laws%conductance(k)
-      end do
-      stiffness = max(stiffness, least_stiffness*maxval(stiffness))
+      associate (alone => bodies%equilibrium%contact%alone)
+         stiffness = max(alone, least_stiffness*maxval(alone))
+      end associate
       where (stiffness <= 0.0_dp) stiffness = 1.0_dp
       graph%modulus = stiffness/weight
       if (.not. any([(law_jumps(graph(k)%law), k=1, size(graph))])) return
@@ -329,10 +328,9 @@ contains
       !> (m) conductance that the bodies put in series with each contact point, 1 where that means
       !> nothing
       real(dp), allocatable, intent(out) :: body(:)
-      type(contact_workspace_type) :: tangent
+      type(friction_tangent_type) :: tangent
       real(dp), allocatable :: change(:, :), load(:, :)
       integer :: k, m, n
-      logical :: sound
 
       m = size(state%contact_state)
       allocate (derivative(m, m), source=0.0_dp)
@@ -347,13 +345,13 @@ contains
             end associate
          end do
          where (body <= 0.0_dp) body = 1.0_dp
-         call make_tangent(bodies%equilibrium%contact, workspace%contact, state, tangent, sound)
-         if (sound) load = heat%loads_of_tail(bodies, by_omega%of_tail)
-         if (sound .and. allocated(workspace%friction%heat)) call follow_friction(bodies, heat, &
-            workspace, state, by_omega, load, sound)
-         if (sound) then
+         call tangent%make(bodies, heat, workspace, state)
+         if (tangent%exists) then
+            load = heat%loads_of_tail(bodies, by_omega%of_tail)
+            call tangent%follow(bodies, heat, workspace, by_omega%of_tail, load, &
+               by_omega%friction_heat)
             allocate (change(m, size(load, 2)))
-            call opening_changes(bodies, workspace%pass%graph, tangent, state, load, change)
+            call opening_changes(bodies, workspace%pass%graph, tangent%contact, state, load, change)
             derivative(:, active) = change(:, :n)
             if (allocated(by_omega%at_edge)) derivative(:, by_omega%at_edge) = &
                derivative(:, by_omega%at_edge) + change(:, n + 1:)
@@ -372,25 +370,23 @@ contains
       type(contact_state_type), intent(in) :: state
       type(increment_workspace_type), intent(inout) :: workspace !! receives the derivative
       type(jump_derivatives_type) :: by_factor
-      type(contact_workspace_type) :: tangent
+      type(friction_tangent_type) :: tangent
       real(dp) :: change(size(state%gap), 1)
       real(dp), allocatable :: load(:, :)
-      logical :: sound
 
       by_factor%of_tail = reshape(data%rate%heat, [size(data%rate%heat), 1])
       call workspace%tail%solve_columns(by_factor%of_tail)
       load = reshape(data%rate%force, [size(data%rate%force), 1]) + &
          product_of(heat%jump_load, by_factor%of_tail)
-      call make_tangent(bodies%equilibrium%contact, workspace%contact, state, tangent, &
-         sound)
-      if (sound .and. allocated(workspace%friction%heat)) call follow_friction(bodies, heat, &
-         workspace, state, by_factor, load, sound)
+      call tangent%make(bodies, heat, workspace, state)
       associate (pass => workspace%pass)
-         if (.not. sound) then
+         if (.not. tangent%exists) then
             deallocate (pass%derivative)
             return
          end if
-         call opening_changes(bodies, pass%graph, tangent, state, load, change)
+         call tangent%follow(bodies, heat, workspace, by_factor%of_tail, load, &
+            by_factor%friction_heat)
+         call opening_changes(bodies, pass%graph, tangent%contact, state, load, change)
          pass%by_factor = change(:, 1)
          if (.not. bodies%points%vary_with_temperature()) return
          change = changes_by_temperature(bodies, heat, workspace, pass%coordinates(), &
@@ -398,24 +394,6 @@ contains
          pass%by_factor = pass%by_factor + matmul(pass%derivative, change(:, 1))
       end associate
    end subroutine load_derivative
-
-   !> Adds to the changes with the conductances what the heat of friction makes that follows them.
-   subroutine follow_friction(bodies, heat, workspace, state, by_omega, load, exists)
-      type(reduced_bodies_type), intent(in) :: bodies
-      type(heat_reduction_type), intent(in) :: heat
-      type(increment_workspace_type), intent(in) :: workspace
-      type(contact_state_type), intent(in) :: state
-      type(jump_derivatives_type), intent(inout) :: by_omega
-      real(dp), intent(inout) :: load(:, :)             ! (mechanical tail, n)
-      logical, intent(out) :: exists                    ! whether the heat has a derivative
-      type(friction_tangent_type) :: of_heat
-
-      call of_heat%make(bodies, heat, workspace, state)
-      exists = of_heat%exists
-      if (.not. exists) return
-      allocate (by_omega%friction_heat(size(workspace%friction%heat), size(load, 2)))
-      call of_heat%follow(bodies, heat, workspace, by_omega%of_tail, load, by_omega%friction_heat)
-   end subroutine follow_friction
 
    !> Changes of the openings with the condensed mechanical load.
    pure subroutine opening_changes(bodies, graph, tangent, state, load, change, of_contact)

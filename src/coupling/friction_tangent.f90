@@ -1,11 +1,11 @@
-!> How the heat of friction follows the contact at given conductances. The heats q that contact
-!> points make are found from the contact state under q, q = Q(q); a change of the condensed load by
+!> How the contact, and with it the heat of friction, follows its load at given conductances. The
+!> heats q that contact points make are found from the contact state under q, q = Q(q); a change of the condensed load by
 !> dc at constant q changes them by
 !>
 !>    dq = (I - Q')^-1 (dQ/dc) dc,
 !>
 !> and the load by L dq more, L being the loads of unit heat with the jumps that it makes. On a
-!> sparse tail neither Q' nor L is formed: GMRES solves for dq, from products.
+!> sparse tail Q' is not formed: GMRES solves for dq, from products.
 module friction_tangent
    use closing_instant, only: contact_change_type, contact_response, make_tangent
    use contact_system, only: contact_open, contact_state_type
@@ -22,13 +22,13 @@ module friction_tangent
 
    !> The derivative at a solution.
    type :: friction_tangent_type
+      type(contact_workspace_type) :: contact   !! of the state, by make_tangent
+      logical :: makes_heat = .false.           !! whether friction does
+      !> Whether the derivative of the contact exists, Q' too, and I - Q' is regular
+      logical :: exists = .false.
       integer, allocatable :: active(:)         !! (a) which of the heats change
-      !> Of a full tail: (thermal tail, a) of unit heat, (mechanical tail, a) L, and I - Q'
-      real(dp), allocatable, private :: on_tail(:, :), load(:, :)
-      type(lu_type) :: lu
+      type(lu_type) :: lu                       !! I - Q' of a full tail
       type(contact_state_type), private :: state          !! whose it is
-      type(contact_workspace_type), private :: contact    !! of the state, by make_tangent
-      logical :: exists = .false.               !! whether Q' exists and I - Q' is regular
    contains
       procedure :: make
       procedure :: solve
@@ -61,33 +61,27 @@ contains
       type(heat_reduction_type), intent(in) :: heat
       type(increment_workspace_type), intent(in) :: workspace  !! as the last pass left it
       type(contact_state_type), intent(in) :: state
-      real(dp), allocatable :: by_heat(:, :), matrix(:, :)
-      logical :: singular, sound
+      real(dp), allocatable :: by_heat(:, :), load(:, :), matrix(:, :), of_tail(:, :)
+      logical :: singular
       integer :: j
 
-      self%exists = .false.
-      call make_tangent(bodies%equilibrium%contact, workspace%contact, state, self%contact, sound)
-      if (.not. sound) return
+      call make_tangent(bodies%equilibrium%contact, workspace%contact, state, self%contact, &
+         self%exists)
+      self%makes_heat = allocated(workspace%friction%heat)
+      if (.not. (self%exists .and. self%makes_heat)) return
       self%state = state
       associate (friction => workspace%friction, heated => bodies%points%heated)
          self%active = pack([(j, j=1, size(heated))], friction%parts(2, :) > 0.0_dp .and. &
             (state%contact_state(heated) /= contact_open .or. abs(friction%heat) > 0.0_dp))
-         self%exists = heat%schur%is_sparse()
-         if (self%exists) return
-         associate (part => friction%parts(2, self%active))
-            self%on_tail = heat%friction_heat(:, self%active)*spread(part, 1, &
-               size(heat%friction_heat, 1))
-            self%load = heat%friction_load(:, self%active)*spread(part, 1, &
-               size(heat%friction_load, 1))
-         end associate
-         call workspace%tail%solve_columns(self%on_tail)
-         self%load = self%load + product_of(heat%jump_load, self%on_tail)
-         by_heat = by_load(self, bodies, workspace, self%load)
-         matrix = -by_heat(self%active, :)
       end associate
+      if (heat%schur%is_sparse()) return
+      allocate (matrix(size(self%active), size(self%active)), source=0.0_dp)
       do j = 1, size(matrix, 1)
-         matrix(j, j) = matrix(j, j) + 1.0_dp
+         matrix(j, j) = 1.0_dp
       end do
+      call find_loads(self, bodies, heat, workspace, matrix, of_tail, load)
+      by_heat = by_load(self, bodies, workspace, load)
+      matrix = matrix - by_heat(self%active, :)
       call self%lu%factor(matrix, singular)
       self%exists = .not. singular
    end subroutine make
@@ -129,22 +123,19 @@ contains
       real(dp), intent(in) :: change(:, :)                       ! (a, columns)
       real(dp), allocatable, intent(out) :: of_tail(:, :)        ! (thermal tail, columns)
       real(dp), allocatable, intent(out) :: load(:, :)           ! (mechanical tail, columns)
-      real(dp) :: entering(size(workspace%friction%heat))
+      real(dp) :: entering(size(workspace%friction%heat), size(change, 2))
       integer :: k
 
-      if (.not. heat%schur%is_sparse()) then
-         of_tail = product_of(self%on_tail, change)
-         load = product_of(self%load, change)
-         return
-      end if
+      entering = 0.0_dp
+      entering(self%active, :) = change
+      entering = workspace%friction%entering_part(entering)
       allocate (of_tail(bodies%thermal%map%tail, size(change, 2)))
       do k = 1, size(change, 2)
-         entering = 0.0_dp
-         entering(self%active) = workspace%friction%parts(2, self%active)*change(:, k)
-         of_tail(:, k) = heat%friction_on_tail(bodies, entering)
+         of_tail(:, k) = heat%friction_on_tail(bodies, entering(:, k))
       end do
       call workspace%tail%solve_columns(of_tail)
       load = heat%loads_of_tail(bodies, of_tail)
+      if (.not. heat%schur%is_sparse()) load = load + product_of(heat%friction_load, entering)
    end subroutine find_loads
 
    !> Adds to changes at constant heat what the heat makes that follows them.
@@ -155,10 +146,11 @@ contains
       type(increment_workspace_type), intent(in) :: workspace  !! as the last pass left it
       real(dp), intent(inout) :: of_tail(:, :)        !! (thermal tail, columns)
       real(dp), intent(inout) :: load(:, :)           !! (mechanical tail, columns)
-      !> (n, columns) changes of the heats in the end
-      real(dp), intent(out), optional :: friction_heat(:, :)
+      !> (n, columns) changes of the heats in the end, where friction makes any
+      real(dp), allocatable, intent(inout), optional :: friction_heat(:, :)
       real(dp), allocatable :: change(:, :), more_load(:, :), more_of_tail(:, :)
 
+      if (.not. self%makes_heat) return
       associate (found => by_load(self, bodies, workspace, load))
          change = found(self%active, :)
       end associate
@@ -167,7 +159,7 @@ contains
       of_tail = of_tail + more_of_tail
       load = load + more_load
       if (.not. present(friction_heat)) return
-      friction_heat = 0.0_dp
+      friction_heat = spread(0.0_dp*workspace%friction%heat, 2, size(load, 2))
       friction_heat(self%active, :) = change
    end subroutine follow
 

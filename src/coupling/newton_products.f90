@@ -10,10 +10,8 @@
 !> but nearly.
 module newton_products
    use arnoldi, only: arnoldi_type
-   use closing_instant, only: make_tangent
    use contact_heat, only: find_edge_loads, heat_by_omega, tail_of_heats, with_temperatures
    use contact_operator, only: opening_changes
-   use contact_workspace, only: contact_workspace_type
    use friction_tangent, only: friction_tangent_type
    use gmres, only: gmres_type
    use heat_reduction, only: heat_reduction_type
@@ -34,12 +32,11 @@ module newton_products
 
    !> What products take, beside the pass.
    type :: opening_tangent_type
-      type(contact_workspace_type) :: contact     !! factors
+      type(friction_tangent_type) :: of_contact   !! with the heat of friction that follows it
       real(dp), allocatable :: coordinate(:)      !! (m) z [length]
       real(dp), allocatable :: rate(:)            !! (m) load of the thermal tail per omega
       integer, allocatable :: at_edge(:)          !! (n) contact points that move edges
       real(dp), allocatable :: load(:, :)         !! (tail, n) what they load beyond that
-      type(friction_tangent_type), allocatable :: friction   !! where it makes heat
    end type opening_tangent_type
 
 contains
@@ -54,16 +51,9 @@ contains
       type(trial_type), intent(inout) :: trial
       logical, intent(in) :: follows_edges   !! whether J has the edges of contact
       type(opening_tangent_type) :: tangent
-      logical :: sound
 
-      call make_tangent(bodies%equilibrium%contact, trial%workspace%contact, trial%next%contact, &
-         tangent%contact, sound)
-      if (sound .and. allocated(trial%workspace%friction%heat)) then
-         allocate (tangent%friction)
-         call tangent%friction%make(bodies, heat, trial%workspace, trial%next%contact)
-         sound = tangent%friction%exists
-      end if
-      if (.not. sound) return
+      call tangent%of_contact%make(bodies, heat, trial%workspace, trial%next%contact)
+      if (.not. tangent%of_contact%exists) return
       associate (pass => trial%workspace%pass)
          tangent%coordinate = pass%coordinates()
          tangent%rate = heat_by_omega(bodies, trial%data, trial%workspace, trial%next%jump)
@@ -201,7 +191,7 @@ contains
       real(dp), allocatable :: of_tail(:, :)
 
       call find_changes(bodies, heat, trial, tangent, with_temperatures(bodies, heat, &
-         trial%workspace, tangent%coordinate, tangent%rate, change, tangent%friction), of_tail, &
+         trial%workspace, tangent%coordinate, tangent%rate, change, tangent%of_contact), of_tail, &
          found)
       of_opening = found(:, 1)
    end function by_laws
@@ -253,11 +243,9 @@ contains
       of_tail = tail_of_heats(bodies, trial%workspace, tangent%rate*of_omega, &
          matmul(tangent%load, of_omega(tangent%at_edge)))
       load = heat%loads_of_tail(bodies, of_tail)
-      if (allocated(tangent%friction)) then
-         with_friction = of_tail
-         call tangent%friction%follow(bodies, heat, trial%workspace, with_friction, load)
-      end if
-      call opening_changes(bodies, trial%workspace%pass%graph, tangent%contact, &
+      with_friction = of_tail
+      call tangent%of_contact%follow(bodies, heat, trial%workspace, with_friction, load)
+      call opening_changes(bodies, trial%workspace%pass%graph, tangent%of_contact%contact, &
          trial%next%contact, load, of_opening)
    end subroutine find_changes
 
