@@ -13,7 +13,8 @@ module branch_path
    use conductance_graph, only: conductance_graph_type
    use fixed_point, only: pass_type
    use kinds, only: dp
-   use path_steps, only: coordinate_rate, distance, moved_along, path_step_type, solve_on_path
+   use path_steps, only: coordinate_rate, distance, moved_along, path_equation_type, &
+      path_step_type
    implicit none
    private
    public :: branch_measure_type, branch_point_type
@@ -97,35 +98,25 @@ contains
       type(pass_type), intent(in) :: pass         !! with its derivatives
       integer, intent(in) :: fixed_coordinate                 !! a contact point, m + 1 for f, or 0
       type(path_step_type), intent(out) :: step   !! not sound where there is none
-      real(dp) :: matrix(size(self%part) + 1, size(self%part) + 1), rest(size(self%part)), rate
-      integer :: k, n
+      type(path_equation_type) :: equation
+      real(dp) :: rate(size(self%part))
+      integer :: k
 
-      n = size(rest)
-      step%sound = allocated(pass%derivative)
-      if (.not. step%sound) return
-      matrix(:n, n + 1) = -pass%by_factor
-      rest = pass%opening - pass%graph%opening(point%coordinate)
-      do k = 1, n
-         associate (z => point%coordinate(k), part => self%part(k))
-            matrix(:n, k) = 0.0_dp
-            if (part > 0.0_dp) then
-               rate = coordinate_rate(pass%graph(k), z, self%body(k), self%length)/part
-               matrix(:n, k) = -rate*pass%graph(k)%derivative(z)*pass%derivative(:, k)
-               matrix(k, k) = matrix(k, k) + rate*pass%graph(k)%advance(z)
-            end if
-         end associate
-      end do
-      ! Without an area a contact point carries no heat, and its coordinate means nothing.
-      do k = 1, n
-         if (self%part(k) > 0.0_dp) cycle
-         matrix(k, :) = 0.0_dp
-         matrix(k, k) = 1.0_dp
-         rest(k) = 0.0_dp
-      end do
-      matrix(n + 1, :) = point%tangent
-      if (fixed_coordinate > 0) matrix(n + 1, :) = [(merge(1.0_dp, 0.0_dp, &
-         k == fixed_coordinate), k=1, n + 1)]
-      call solve_on_path(matrix, rest, step)
+      if (.not. allocated(pass%derivative)) return
+      ! Without an area a contact point carries no heat: its row of the derivative is zero, and its
+      ! coordinate means nothing.
+      associate (z => point%coordinate, counts => self%part > 0.0_dp)
+         rate = [(coordinate_rate(pass%graph(k), z(k), self%body(k), self%length), k=1, &
+            size(rate))]/max(self%part, tiny(1.0_dp))
+         equation%advance = merge(rate*pass%graph%advance(z), 1.0_dp, counts)
+         equation%slope = merge(rate*pass%graph%derivative(z), 0.0_dp, counts)
+         equation%by_parameter = -pass%by_factor
+         equation%rest = merge(pass%opening - pass%graph%opening(z), 0.0_dp, counts)
+      end associate
+      equation%border = point%tangent
+      if (fixed_coordinate > 0) equation%border = [(merge(1.0_dp, 0.0_dp, &
+         k == fixed_coordinate), k=1, size(rate) + 1)]
+      call equation%solve(pass%derivative, step)
       if (.not. step%sound) return
       if (dot_product(step%tangent, point%tangent) < 0.0_dp) step%tangent = -step%tangent
       if (fixed_coordinate == 0) step%change = step%change - &

@@ -8,8 +8,7 @@ module path_steps
    use kinds, only: dp
    implicit none
    private
-   public :: path_equation_type, path_step_type, coordinate_rate, solve_on_path, moved_along, &
-      distance
+   public :: path_equation_type, path_step_type, coordinate_rate, moved_along, distance
 
    !> The equations of a step, whose unknowns are lengths along the graphs and the parameter: beside
    !> the derivative D of the openings by the conductances
@@ -38,12 +37,15 @@ module path_steps
 
 contains
 
-   !> The step where D is a matrix; not sound where the equations are singular.
+   !> The step where D is a matrix, its tangent's product with the border positive; not sound where
+   !> the equations are singular.
    subroutine solve(self, derivative, step)
       class(path_equation_type), intent(in) :: self
       real(dp), intent(in) :: derivative(:, :)   !! (n, n) D [length/(power/(length^2 temperature))]
       type(path_step_type), intent(out) :: step
-      real(dp) :: matrix(size(self%border), size(self%border))
+      real(dp) :: matrix(size(self%border), size(self%border)), x(size(self%border), 2)
+      type(lu_type) :: lu
+      logical :: singular
       integer :: k, n
 
       n = size(self%rest)
@@ -53,7 +55,16 @@ contains
       end do
       matrix(:n, n + 1) = self%by_parameter
       matrix(n + 1, :) = self%border
-      call solve_on_path(matrix, self%rest, step)
+      call lu%factor(matrix, singular)
+      step%sound = .not. singular
+      if (singular) return
+      x = 0.0_dp
+      x(:n, 1) = self%rest
+      x(n + 1, 2) = 1.0_dp
+      call lu%solve(x)
+      step%tangent = x(:, 2)/norm2(x(:, 2))
+      step%change = x(:, 1)
+      step%is_reversed = lu%negative_determinant()
    end subroutine solve
 
    !> Change of the coordinate for the length along the graph.
@@ -69,27 +80,6 @@ contains
          rate = 1.0_dp/(advance/length + body/(omega + body)*abs(slope)/(omega + body))
       end associate
    end function coordinate_rate
-
-   !> Correction and tangent, whose product with the border is positive.
-   subroutine solve_on_path(matrix, rest, step)
-      real(dp), intent(in) :: matrix(:, :)   !! (n + 1, n + 1) derivatives; the last row: a border
-      real(dp), intent(in) :: rest(:)        !! (n) what the equations lack
-      type(path_step_type), intent(out) :: step
-      real(dp) :: x(size(rest) + 1, 2)
-      type(lu_type) :: lu
-      logical :: singular
-
-      x = 0.0_dp
-      x(:size(rest), 1) = rest
-      x(size(rest) + 1, 2) = 1.0_dp
-      call lu%factor(matrix, singular)
-      step%sound = .not. singular
-      if (singular) return
-      call lu%solve(x)
-      step%tangent = x(:, 2)/norm2(x(:, 2))
-      step%change = x(:, 1)
-      step%is_reversed = lu%negative_determinant()
-   end subroutine solve_on_path
 
    !> Coordinates at the ends of walks along the graphs, of given lengths.
    elemental function moved_along(graph, from, walk, body, length) result(coordinate)
