@@ -81,18 +81,13 @@ contains
       type(reduced_bodies_type), intent(in) :: bodies
       type(increment_data_type), intent(in) :: data
       type(contact_scales_type) :: scales                     !! largest values, length > 0
-      real(dp) :: stiffness
-      integer :: k
 
       scales%force = maxval(data%previous%force)
-      scales%length = max(data%displacement_scale, maxval(abs(data%previous%gap)))
-      do k = 1, size(bodies%equilibrium%contact%normal)
-         associate (row => bodies%equilibrium%contact%normal(k))
-            stiffness = bodies%equilibrium%contact%alone(k)
-            if (stiffness > 0.0_dp) scales%length = max(scales%length, &
-               abs(data%no_jump_load(row))/stiffness)
-         end associate
-      end do
+      associate (alone => bodies%equilibrium%contact%alone, &
+         normal_load => abs(data%no_jump_load(bodies%equilibrium%contact%normal)))
+         scales%length = max(data%displacement_scale, maxval(abs(data%previous%gap)), &
+            maxval(pack(normal_load, alone > 0.0_dp)/pack(alone, alone > 0.0_dp)))
+      end associate
       if (scales%length <= 0.0_dp) scales%length = 1.0_dp
    end function contact_scales
 

@@ -143,8 +143,11 @@ contains
    !> Leaves nothing but known loads and the state.
    pure subroutine clear(self)
       class(trial_type), intent(inout) :: self
+      type(increment_data_type) :: data
+      type(increment_workspace_type) :: workspace
 
-      call forget(self%data, self%workspace)
+      self%data = data
+      self%workspace = workspace
    end subroutine clear
 
    !> Leaves, for a solution with other corrections, the contact that was found, its factors and
@@ -160,11 +163,5 @@ contains
       self%workspace%pass = pass_type()
       self%workspace%record = solution_report_type()
    end subroutine begin_again
-
-   !> What nothing was done with.
-   pure subroutine forget(data, workspace)
-      type(increment_data_type), intent(out) :: data
-      type(increment_workspace_type), intent(out) :: workspace
-   end subroutine forget
 
 end module increment_data

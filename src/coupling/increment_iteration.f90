@@ -81,22 +81,17 @@ contains
          is_near = allocated(trial%data%closing_start) .and. &
             any(first%method == [method_anderson, method_zaitsev])
          if (is_near) first%g = 1.0_dp
-         if (workspace%resolves_edge) then
+         do while (workspace%resolves_edge .or. first%method /= controls%method .or. is_near)
             call use_method(bodies, heat, first, trial, error)
             if (.not. allocated(error)) return
             if (error%status /= status_no_convergence) return
+            call start_again()
+            if (.not. workspace%resolves_edge) exit
             call append(workspace%record%notes, 'the position of the edge of contact in its '// &
                'element side does not converge; in this increment heat crosses the undivided side')
-            call start_again()
             workspace%resolves_edge = .false.
             workspace%edge = edge_heat_type()
-         end if
-         if (first%method /= controls%method .or. is_near) then
-            call use_method(bodies, heat, first, trial, error)
-            if (.not. allocated(error)) return
-            if (error%status /= status_no_convergence) return
-            call start_again()
-         end if
+         end do
          before = size(workspace%record%iterations)
          call use_method(bodies, heat, controls, trial, error)
          if (allocated(error) .and. size(workspace%record%iterations) == before) then
