@@ -20,7 +20,7 @@ module sliding_faces
    use kinds, only: dp
    use mesh, only: mesh_type
    use mortar_segments, only: hats_of
-   use sum_lists, only: sum_list_type
+   use sum_lists, only: single_values, sum_list_type
    use surface_chains, only: chain_faces, surface_chain_type
    implicit none
    private
@@ -40,7 +40,7 @@ contains
       type(surface_chain_type), allocatable :: slaves(:), masters(:)
       type(contact_points_type) :: opposite
       type(mesh_type) :: displaced
-      integer, allocatable :: master_nodes(:)
+      integer, allocatable :: master_nodes(:), place(:)   ! place: (m) among these, 0 for none
       integer :: i
 
       call chain_faces(mesh, mesh%surfaces(definition%slave), slaves, error)
@@ -61,10 +61,14 @@ contains
       call find_opposite_points(displaced, definition, slaves, thickness, opposite, error)
       if (allocated(error)) return
       call begin_points(mesh, definition, slaves, thickness, master_nodes, points)
-      if (.not. allocated(opposite%slave)) return
-      opposite%initial_gap = opposite%initial_gap + sum(opposite%normal* &
-         opposite%relative(displacement), dim=1)
-      call take_opposite(displaced%coordinates, opposite, points)
+      allocate (place(size(points%slave)), source=0)
+      if (allocated(opposite%slave)) then
+         opposite%initial_gap = opposite%initial_gap + sum(opposite%normal* &
+            opposite%relative(displacement), dim=1)
+         place = [(findloc(opposite%slave, points%slave(i), dim=1), i=1, size(place))]
+         call take_opposite(displaced%coordinates, opposite, place, points)
+      end if
+      call set_sums(opposite, place, points)
    end subroutine place_points
 
    !> Refuses what has no ends to slide along, and masters whose lines would share a contact point.
@@ -189,35 +193,42 @@ contains
          allocate (points%mortar%segments(0))
          points%mortar%hats = hats_of(points%mortar%segments, size(points%slave))
       end if
-      call set_sums(points)
    end subroutine begin_points
 
-   !> The sums of nodal values: those of what lies opposite, or of the slave's nodes alone.
-   pure subroutine set_sums(points, opposite, place)
+   !> The sums of nodal values: those of what lies opposite, or of the slave's nodes alone; and the
+   !> contact quantities at all nodes of both faces, empty where they are not opposite each other.
+   pure subroutine set_sums(opposite, place, points)
+      type(contact_points_type), intent(in) :: opposite
+      integer, intent(in) :: place(:)                         ! (m) as above
       type(contact_points_type), intent(inout) :: points
-      type(contact_points_type), intent(in), optional :: opposite
-      integer, intent(in), optional :: place(:)               ! (m) among these, 0 for none
       type(sum_list_type) :: own, none
-      integer :: k
+      integer :: i, k, number(0:maxval(place))
 
-      call own%reserve(size(points%slave), size(points%slave))
-      call none%reserve(size(points%slave), 1)
-      do k = 1, size(points%slave)
-         call own%add(points%slave(k:k), [1.0_dp])
+      own = single_values(points%slave)
+      call none%reserve(size(place), 1)
+      number = 0
+      do k = 1, size(place)
          call none%add([integer ::], [real(dp) ::])
+         number(place(k)) = k
       end do
-      points%difference = own
-      points%slave_mean = own
-      points%master_mean = none
-      points%at_face_nodes = of_faces(points)
-      if (.not. present(opposite)) return
       points%difference = replaced(own, opposite%difference)
       points%slave_mean = replaced(own, opposite%slave_mean)
       points%master_mean = replaced(none, opposite%master_mean)
-      points%at_face_nodes = of_faces(points, opposite, place)
-      if (.not. opposite%turns()) return
-      points%along = replaced(own, opposite%along)
-      points%across = replaced(none, opposite%across)
+      if (opposite%turns()) then
+         points%along = replaced(own, opposite%along)
+         points%across = replaced(none, opposite%across)
+      end if
+      call points%at_face_nodes%reserve(size(points%face_node), 2*size(points%face_node))
+      do i = 1, size(points%face_node)
+         k = 0
+         if (any(place > 0)) k = findloc(opposite%face_node, points%face_node(i), dim=1)
+         if (k > 0) then
+            call points%at_face_nodes%add(number(opposite%at_face_nodes%values_of(k)), &
+               opposite%at_face_nodes%coefficients_of(k))
+         else
+            call points%at_face_nodes%add([integer ::], [real(dp) ::])
+         end if
+      end do
    contains
       !> The sums of contact points without a master, and those of the others.
       pure function replaced(without, with) result(sums)
@@ -225,7 +236,7 @@ contains
          type(sum_list_type) :: sums
          integer :: k
 
-         call sums%reserve(size(place), size(with%value) + size(place))
+         call sums%reserve(size(place), 8*size(place))
          do k = 1, size(place)
             if (place(k) > 0) then
                call sums%add(with%values_of(place(k)), with%coefficients_of(place(k)))
@@ -236,45 +247,17 @@ contains
       end function replaced
    end subroutine set_sums
 
-   !> Contact quantities at all nodes of both faces, empty where they are not opposite each other.
-   pure function of_faces(points, opposite, place) result(sums)
-      type(contact_points_type), intent(in) :: points
-      type(contact_points_type), intent(in), optional :: opposite
-      integer, intent(in), optional :: place(:)
-      type(sum_list_type) :: sums
-      integer, allocatable :: number(:)
-      integer :: i, k
-
-      call sums%reserve(size(points%face_node), 2*size(points%face_node))
-      if (present(place)) then
-         allocate (number(maxval(place)))
-         do k = 1, size(place)
-            if (place(k) > 0) number(place(k)) = k
-         end do
-      end if
-      do i = 1, size(points%face_node)
-         k = 0
-         if (present(opposite)) k = findloc(opposite%face_node, points%face_node(i), dim=1)
-         if (k > 0) then
-            call sums%add(number(opposite%at_face_nodes%values_of(k)), &
-               opposite%at_face_nodes%coefficients_of(k))
-         else
-            call sums%add([integer ::], [real(dp) ::])
-         end if
-      end do
-   end function of_faces
-
    !> Gives those of the contact points that have a master what they have beside it. Places and arc
    !> length stay those of the undeformed slave: the contact point of a side that is covered in part
    !> lies where the cover ends.
-   pure subroutine take_opposite(x, opposite, points)
+   pure subroutine take_opposite(x, opposite, place, points)
       real(dp), intent(in) :: x(:, :)                         ! (2, nodes) displaced [length]
       type(contact_points_type), intent(in) :: opposite
+      integer, intent(in) :: place(:)                         ! (m) among these, 0 for none
       type(contact_points_type), intent(inout) :: points
-      integer :: i, j, k, place(size(points%slave))
+      integer :: i, j, k
       integer :: number(0:size(opposite%slave))
 
-      place = [(findloc(opposite%slave, points%slave(k), dim=1), k=1, size(place))]
       number = 0
       do k = 1, size(place)
          j = place(k)
@@ -294,7 +277,6 @@ contains
          points%is_open_corner(k) = .false.
       end do
       points%finest_gap = opposite%finest_gap
-      call set_sums(points, opposite, place)
       if (.not. allocated(opposite%mortar%segments)) return
       points%mortar = opposite%mortar
       if (size(opposite%slave) == size(place) .and. all(number(1:) == [(k, k=1, size(number) - &
