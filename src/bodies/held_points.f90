@@ -143,12 +143,16 @@ contains
       integer, intent(in) :: node
       real(dp), intent(out) :: axes(2, 2)           ! a unit vector each
       logical, intent(out) :: fixed(2)
-      integer :: i
+      integer :: i, named   ! named: the node whose degrees of freedom cards name for it
 
       axes = reshape([1.0_dp, 0.0_dp, 0.0_dp, 1.0_dp], [2, 2])
+      named = node
       i = findloc(points%partners%node, node, dim=1)
-      if (i > 0) axes = points%partners(i)%axes
-      fixed = prescribed(2*named_node(points, node) - 1:2*named_node(points, node))
+      if (i > 0) then
+         axes = points%partners(i)%axes
+         named = points%partners(i)%partner
+      end if
+      fixed = prescribed(2*named - 1:2*named)
       do i = 1, size(points%equations)
          associate (equation => points%equations(i))
             if (equation%node(1) /= node .or. equation%is_thermal()) cycle
@@ -158,18 +162,6 @@ contains
          end associate
       end do
    end subroutine find_axes
-
-   !> The node whose degrees of freedom cards name for a node: its partner where *TRANSFORM turns
-   !> its axes.
-   pure integer function named_node(points, node)
-      type(connections_type), intent(in) :: points
-      integer, intent(in) :: node
-      integer :: i
-
-      named_node = node
-      i = findloc(points%partners%node, node, dim=1)
-      if (i > 0) named_node = points%partners(i)%partner
-   end function named_node
 
    !> Positions of the slave along the tangents, relative to the master. A held contact point slides
    !> only as its supports do: while it is open, the position counts that it would have if it closed

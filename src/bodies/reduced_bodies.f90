@@ -354,12 +354,10 @@ contains
       logical, intent(in) :: mechanics                       !! whether displacements are numbered
       logical, intent(in) :: heat                            !! whether temperatures are numbered
 
-      if (mechanics) then
-         self%held_direction = held_directions(self%points, prescribed)
-         call find_motions(self, model, prescribed)
-      end if
       associate (points => self%points, used => model%mesh%node_body > 0)
          if (mechanics) then
+            self%held_direction = held_directions(points, prescribed)
+            call find_motions(self, model, prescribed)
             call constrain_displacements(used, prescribed, points, &
                self%laws%friction%coefficient > 0.0_dp, slave_is_stiffer(model, points, .true.), &
                self%mechanical%map, self%mechanical%division)
@@ -584,15 +582,11 @@ contains
    pure real(dp) function largest_displacement(self, displacement) result(largest)
       class(reduced_bodies_type), intent(in) :: self
       real(dp), intent(in) :: displacement(:)                !! (2 nodes) [length]
-      real(dp), allocatable :: in_plane(:)
+      real(dp) :: in_plane(size(displacement))
 
-      if (allocated(self%points%along_z)) then
-         in_plane = displacement
-         in_plane(self%points%along_z) = 0.0_dp
-         largest = maxval(abs(in_plane))
-      else
-         largest = maxval(abs(displacement))
-      end if
+      in_plane = displacement
+      if (allocated(self%points%along_z)) in_plane(self%points%along_z) = 0.0_dp
+      largest = maxval(abs(in_plane))
    end function largest_displacement
 
    !> rho c of the elements at the means of temperatures of their nodes.

@@ -129,7 +129,8 @@ contains
       if (work%driven) then
          state = guess
          ! Bodies in a row that touch are pushed onto each other one by one, but close at once.
-         where (touches(system, work, guess))
+         where (guess%contact_state == contact_open .and. .not. work%removed .and. guess%gap <= &
+            barely*system%least_length)
             state%contact_state = contact_slip
             state%direction = 0
          end where
@@ -177,17 +178,6 @@ contains
       end do
       if (.not. allocated(error)) call work%solve_set(system, load, state, error)
    end subroutine follow_paths
-
-   !> Open contact points that touch.
-   pure function touches(system, work, state)
-      type(contact_system_type), intent(in) :: system
-      type(contact_workspace_type), intent(in) :: work
-      type(contact_state_type), intent(in) :: state
-      logical :: touches(size(state%gap))
-
-      touches = state%contact_state == contact_open .and. .not. work%removed .and. &
-         state%gap <= barely*system%least_length
-   end function touches
 
    !> Corrects the active set until nothing violates its condition.
    !> Errors: as solve_set; the sets do not settle, and then restless contact points are those that

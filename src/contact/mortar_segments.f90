@@ -372,18 +372,16 @@ contains
       real(dp), intent(in) :: section         !! thickness, 0 about an axis [length]
       integer, intent(in) :: point_of(:)      !! (corners) contact point of each; 0 for none
       type(edge_segment_type), allocatable :: segments(:)
-      integer :: count_of, k, pass, s
+      integer :: k, n, s
 
-      do pass = 1, 2
-         count_of = 0
-         do s = 1, size(side)
-            do k = 1, size(side(s)%opposite)
-               if (side(s)%opposite(k) == 0) cycle
-               count_of = count_of + 1
-               if (pass == 2) segments(count_of) = segment_of(side(s), k)
-            end do
+      allocate (segments(sum([(count(side(s)%opposite > 0), s=1, size(side))])))
+      n = 0
+      do s = 1, size(side)
+         do k = 1, size(side(s)%opposite)
+            if (side(s)%opposite(k) == 0) cycle
+            n = n + 1
+            segments(n) = segment_of(side(s), k)
          end do
-         if (pass == 1) allocate (segments(count_of))
       end do
 
    contains

@@ -69,7 +69,7 @@ contains
       gap = points%initial_gap(earlier + 1:earlier + size(s))
       edge = points%edge(earlier + 1:earlier + size(s))
       length = max(edge, maxval(s, mask=closed) - minval(s, mask=closed))
-      past = past_end(s, to_end, movement)
+      past = max(0.0_dp, -movement - (s - s(1)) - to_end(1), movement + s - s(size(s)) - to_end(2))
       call take(slide, past/(small_part*length), 'slides past the end of the master surface by ', &
          past, ', more than a twentieth of the length in contact; extend the master, or '// &
          'exchange slave and master')
@@ -102,16 +102,6 @@ contains
          slide%words = before//to_text(value(k))//behind
       end subroutine take
    end subroutine find_worst
-
-   !> How far a movement along the face takes contact points past the ends of the master; 0 where
-   !> they stay.
-   pure function past_end(s, to_end, movement) result(past)
-      real(dp), intent(in) :: s(:), movement(:)         ! (n) of a piece [length]
-      real(dp), intent(in) :: to_end(2)
-      real(dp) :: past(size(movement))
-
-      past = max(0.0_dp, -movement - (s - s(1)) - to_end(1), movement + s - s(size(s)) - to_end(2))
-   end function past_end
 
    !> How different the gaps are that the contact closes, with those of its open neighbours, for a
    !> zone may end anywhere before them; or the largest overlap that it presses apart.

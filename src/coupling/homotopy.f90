@@ -105,13 +105,11 @@ contains
       real(dp), allocatable, intent(in) :: derivative(:, :)
       real(dp), intent(out) :: coordinate(:)                !! (m) z [length]
       !> step by products, where the derivative is not formed
-      type(path_step_type), allocatable, intent(in), optional :: found
+      type(path_step_type), intent(in), optional :: found
       type(path_equation_type) :: equation
       type(path_step_type) :: step
 
-      if (present(found)) then
-         if (allocated(found)) step = found
-      end if
+      if (present(found)) step = found
       if (.not. allocated(step%equation)) then
          call self%equation(graph, body, opening, equation)
          if (allocated(derivative)) call equation%solve(derivative, step)

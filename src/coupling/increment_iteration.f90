@@ -300,21 +300,22 @@ contains
       type(increment_workspace_type), intent(inout) :: workspace
       real(dp), intent(inout) :: residual
 
+      type(edge_heat_type) :: found
+      logical :: is_same
+
       call find_edge_integrals(bodies, workspace%pass%graph%modulus, workspace%pass%opening, &
          workspace%edge_integrals)
-      residual = max(residual, edge_residual(workspace%edge, edge_heat_at( &
-         workspace%edge_integrals, bodies%points%weight, workspace%pass%image)))
+      found = edge_heat_at(workspace%edge_integrals, bodies%points%weight, workspace%pass%image)
+      associate (given => workspace%edge)
+         is_same = size(found%point) == size(given%point)
+         if (is_same) is_same = all(found%point == given%point)
+         if (is_same) then
+            residual = maxval([residual, point_residual(given%conductance, found%conductance)])
+         else
+            residual = max(residual, 1.0_dp)
+         end if
+      end associate
    end subroutine measure_edges
-
-   !> How far the conductances at edges are from those that a pass found.
-   pure real(dp) function edge_residual(at_edge, found) result(residual)
-      type(edge_heat_type), intent(in) :: at_edge, found
-
-      residual = 1.0_dp
-      if (size(found%point) /= size(at_edge%point)) return
-      if (any(found%point /= at_edge%point)) return
-      residual = maxval([0.0_dp, point_residual(at_edge%conductance, found%conductance)])
-   end function edge_residual
 
    !> Keeps the passes, and says so where the last one is not good enough.
    subroutine close_passes(record, passes, last, wanted, error)

@@ -99,9 +99,13 @@ contains
       type(loads_type), intent(in) :: loads
       type(trial_type), intent(inout) :: trial
       type(error_type), allocatable, intent(out) :: error
-      real(dp), allocatable :: inside(:), left(:), sources(:)
+      real(dp), allocatable :: inside(:), left(:)
+      !> (nodes) right-hand side of (3.4) divided by a1, with the heat of friction known before [power]
+      real(dp), allocatable :: sources(:)
 
-      sources = history_of_heat(bodies, trial%data)
+      sources = trial%data%equation%history(bodies%thermal%matrix)
+      if (allocated(trial%data%friction%heat)) sources = sources + nodal_friction_heat(bodies, &
+         trial%data%friction%load_at_start())
       associate (data => trial%data, temperature => trial%next%temperature, &
          given => loads%temperature%value)
          if (only_places(bodies, heat, trial)) call heat%condense_inside(bodies%thermal, sources, &
@@ -117,17 +121,6 @@ contains
             status_no_convergence, error)
       end associate
    end subroutine load_heat
-
-   !> Right-hand side of (3.4) divided by a1, with the heat of friction that is known before.
-   pure function history_of_heat(bodies, data) result(rhs)
-      type(reduced_bodies_type), intent(in) :: bodies
-      type(increment_data_type), intent(in) :: data
-      real(dp), allocatable :: rhs(:)                            ! (nodes) [power]
-
-      rhs = data%equation%history(bodies%thermal%matrix)
-      if (allocated(data%friction%heat)) rhs = rhs + nodal_friction_heat(bodies, &
-         data%friction%load_at_start())
-   end function history_of_heat
 
    !> Contact and conductance of an increment whose heat is loaded or solved.
    !> Errors: as solve_points.
