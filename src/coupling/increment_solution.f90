@@ -100,8 +100,7 @@ contains
       type(trial_type), intent(inout) :: trial
       type(error_type), allocatable, intent(out) :: error
       real(dp), allocatable :: inside(:), left(:)
-      !> (nodes) right-hand side of (3.4) divided by a1, with the heat of friction known before [power]
-      real(dp), allocatable :: sources(:)
+      real(dp), allocatable :: sources(:)   ! (nodes) right-hand side of (3.4) over a1 [power]
 
       sources = trial%data%equation%history(bodies%thermal%matrix)
       if (allocated(trial%data%friction%heat)) sources = sources + nodal_friction_heat(bodies, &
@@ -289,7 +288,8 @@ contains
             call temperature_jumps(bodies, heat, data, next%omega, workspace, next%jump)
          end if
          next%omega_before = next%omega
-         call add_jumps(bodies, heat, workspace%on_tail, next%temperature)
+         next%temperature = next%temperature + [heat%extended(bodies%thermal, &
+            reshape(workspace%on_tail, [size(workspace%on_tail), 1]))]
       end associate
    end subroutine conduct
 
@@ -440,7 +440,8 @@ contains
          if (.not. solves_mechanics(data%analysis)) return
          if (only_places(bodies, heat, trial)) then
             kept = 0.0_dp
-            call heat%add_kept_forces(kept_jumps(bodies, heat, workspace%on_tail), kept)
+            call heat%add_kept_forces([heat%extended_to_kept(bodies%thermal, &
+               reshape(workspace%on_tail, [size(workspace%on_tail), 1]))], kept)
             data%force%rhs(:, 1) = data%force%rhs(:, 1) + bodies%mechanical%map%restrict(kept)
          else if (bodies%is_coupled) then
             call complete_temperatures(bodies, heat, loads, trial)
@@ -484,7 +485,8 @@ contains
       type(trial_type), intent(inout) :: trial         ! with the temperatures of welded contacts
 
       associate (workspace => trial%workspace, next => trial%next)
-         call add_jumps(bodies, heat, workspace%on_tail, next%temperature)
+         next%temperature = next%temperature + [heat%extended(bodies%thermal, &
+            reshape(workspace%on_tail, [size(workspace%on_tail), 1]))]
          if (allocated(workspace%friction%heat)) next%temperature = next%temperature + &
             heat%welded_response(bodies%thermal, nodal_friction_heat(bodies, &
             workspace%friction%parts(2, :)*workspace%friction%heat))
@@ -506,7 +508,8 @@ contains
       associate (next => trial%next, force => trial%data%force)
          if (only_places(bodies, heat, trial)) then
             inside = merge(next%temperature, 0.0_dp, bodies%thermal%division%piece > 0)
-            next%temperature = next%temperature + kept_jumps(bodies, heat, trial%workspace%on_tail)
+            next%temperature = next%temperature + [heat%extended_to_kept(bodies%thermal, &
+               reshape(trial%workspace%on_tail, [size(trial%workspace%on_tail), 1]))]
             call heat%pieces%fill(next%temperature)
             next%temperature = next%temperature + inside
             force%forces = bodies%equilibrium%forces_inside(bodies%mechanical, next%force_load + &
@@ -518,29 +521,6 @@ contains
             force%forces)
       end associate
    end subroutine fill_bodies
-
-   !> What the jumps make of the temperatures that pieces keep.
-   function kept_jumps(bodies, heat, on_tail) result(temperature)
-      type(reduced_bodies_type), intent(in) :: bodies
-      type(heat_reduction_type), intent(in) :: heat
-      real(dp), intent(in) :: on_tail(:)               ! (thermal tail)
-      real(dp) :: temperature(bodies%thermal%matrix%row_count)   ! (nodes) [temperature]
-
-      temperature = reshape(heat%extended_to_kept(bodies%thermal, reshape(on_tail, &
-         [size(on_tail), 1])), shape(temperature))
-   end function kept_jumps
-
-   !> Adds what the jumps make of the temperatures of welded contacts.
-   subroutine add_jumps(bodies, heat, on_tail, temperature)
-      type(reduced_bodies_type), intent(in) :: bodies
-      type(heat_reduction_type), intent(in) :: heat
-      real(dp), intent(in) :: on_tail(:)               ! (thermal tail)
-      real(dp), intent(inout) :: temperature(:)        ! (nodes) [temperature]
-
-      associate (of_jumps => heat%extended(bodies%thermal, reshape(on_tail, [size(on_tail), 1])))
-         temperature = temperature + of_jumps(:, 1)
-      end associate
-   end subroutine add_jumps
 
    !> Slip counts from the instant of closing. Tangential positions that the contact system does not
    !> carry, of contact points that are frictionless or held, are taken from the recovered

@@ -77,6 +77,7 @@ contains
       type(opening_tangent_type), intent(in) :: tangent
       real(dp), dimension(size(trial%next%omega)) :: advance, diagonal, inertia, rest, slope
       logical :: is_left(size(trial%next%omega))
+      type(gmres_type) :: gmres
 
       associate (pass => trial%workspace%pass)
          advance = pass%graph%advance(tangent%coordinate)
@@ -101,7 +102,11 @@ contains
          end where
          diagonal = diagonal + inertia
          where (abs(diagonal) < least_own) diagonal = 1.0_dp
-         pass%step = step_of()
+         call gmres%begin(rest/diagonal, solved, min(size(rest), most_products))
+         do while (gmres%wants_product)
+            call gmres%take((by_jacobian(gmres%vector) + inertia*gmres%vector)/diagonal)
+         end do
+         pass%step = gmres%solution()
       end associate
    contains
       !> J times a change of the coordinates.
@@ -112,17 +117,6 @@ contains
          product = merge(change, advance*change - by_laws(bodies, heat, trial, tangent, &
             slope*change), is_left)
       end function by_jacobian
-
-      function step_of() result(step)
-         real(dp) :: step(size(rest))
-         type(gmres_type) :: gmres
-
-         call gmres%begin(rest/diagonal, solved, min(size(rest), most_products))
-         do while (gmres%wants_product)
-            call gmres%take((by_jacobian(gmres%vector) + inertia*gmres%vector)/diagonal)
-         end do
-         step = gmres%solution()
-      end function step_of
 
       !> As newton has it, of roughly known eigenvalues.
       function stable_time_step() result(tau)
