@@ -87,7 +87,6 @@ module reduced_bodies
       procedure, private :: couples
       procedure :: number
       procedure :: assemble_steps
-      procedure :: assemble
       procedure :: form_operators
       procedure :: move_operators
       procedure :: has_operators_of
@@ -451,22 +450,11 @@ contains
             if (.not. allocated(model%steps(i)%loads)) cycle
             changes = changes .or. any(model%steps(i)%loads%kind == load_temperature)
          end do
-         call self%assemble(model, mechanics, heat, mechanics .and. changes)
+         call self%form_operators(model, model%initial_temperature, mechanics, heat, &
+            with_strain=mechanics .and. changes)
       end associate
-   end subroutine assemble_steps
-
-   !> Assembles the matrices of the bodies alone, once.
-   subroutine assemble(self, model, with_mechanics, with_heat, with_strain)
-      class(reduced_bodies_type), intent(inout) :: self !! prepared
-      type(model_type), intent(in) :: model
-      logical, intent(in) :: with_mechanics                  !! whether any step solves mechanics
-      logical, intent(in) :: with_heat                       !! whether any step solves heat
-      logical, intent(in) :: with_strain !! whether temperatures strain the bodies in any step
-
-      call self%form_operators(model, model%initial_temperature, with_mechanics, with_heat, &
-         with_strain)
       if (any(model%steps%dilates)) call self%dilatation%prepare(model)
-   end subroutine assemble
+   end subroutine assemble_steps
 
    !> Forms the operators with the properties at given temperatures. Their reductions do not serve
    !> any more.
@@ -474,7 +462,9 @@ contains
       class(reduced_bodies_type), intent(inout) :: self !! prepared
       type(model_type), intent(in) :: model
       real(dp), intent(in) :: temperature(:)                 !! (nodes)
-      logical, intent(in) :: with_mechanics, with_heat, with_strain   !! as in assemble
+      logical, intent(in) :: with_mechanics                  !! whether any step solves mechanics
+      logical, intent(in) :: with_heat                       !! whether any step solves heat
+      logical, intent(in) :: with_strain !! whether temperatures strain the bodies in any step
       type(point_materials_type) :: points
 
       associate (mesh => model%mesh, sections => model%sections, materials => model%materials)

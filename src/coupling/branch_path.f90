@@ -42,7 +42,6 @@ module branch_path
       procedure :: way
       procedure :: longest
       procedure :: correction
-      procedure :: orient
       procedure :: kinked
       procedure :: at_kink
       procedure :: is_caught
@@ -122,19 +121,6 @@ contains
       if (fixed_coordinate == 0) step%change = step%change - &
          dot_product(step%change, step%tangent)*step%tangent
    end subroutine correction
-
-   !> Turns a tangent the way that the branch goes on from one point to another: the coordinate that
-   !> passes a kink in between goes on in its sense.
-   pure subroutine orient(self, from, to, tangent)
-      class(branch_measure_type), intent(in) :: self
-      type(branch_point_type), intent(in) :: from, to
-      real(dp), intent(inout) :: tangent(:)
-      integer :: k
-
-      k = self%kinked(from, to)
-      if (k == 0) return
-      if (tangent(k)*from%tangent(k) < 0.0_dp) tangent = -tangent
-   end subroutine orient
 
    !> The contact point whose coordinate passes a kink between two points, the fastest one of
    !> several; 0 for none.

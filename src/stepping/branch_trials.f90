@@ -184,6 +184,7 @@ contains
       type(branch_type), intent(inout) :: self
       type(path_step_type), intent(out) :: correction
       type(error_type), allocatable, intent(out) :: error
+      integer :: k
 
       call find_pass(self, error)
       if (allocated(error)) then
@@ -193,7 +194,12 @@ contains
       self%point%tangent = self%from%tangent
       call self%measure%correction(self%point, self%pass, self%fixed_coordinate, correction)
       if (.not. correction%sound) return
-      call self%measure%orient(self%from, self%point, correction%tangent)
+      ! The coordinate that passes a kink goes on in its sense.
+      k = self%measure%kinked(self%from, self%point)
+      if (k > 0) then
+         if (correction%tangent(k)*self%from%tangent(k) < 0.0_dp) correction%tangent = &
+            -correction%tangent
+      end if
       self%point%tangent = correction%tangent
    end subroutine correct_once
 
