@@ -207,10 +207,8 @@ contains
       integer :: i
 
       do i = 1, size(stiffness)
-         associate (rows => self%link_dofs)
-            stiffness(i) = node_stiffness(matrix, (rows%value(rows%start(i): &
-               rows%start(i + 1) - 1) - 1)/self%components + 1, self%components)
-         end associate
+         stiffness(i) = node_stiffness(matrix, (self%link_dofs%values_of(i) - 1)/ &
+            self%components + 1, self%components)
       end do
    end function link_stiffness
 
@@ -373,7 +371,7 @@ contains
       type(linear_constraints_type), intent(inout) :: constraints
       integer, intent(out) :: unknown(:)
       logical :: by_link(size(unknown)), enters(size(rows%on_tail)), free(size(used)), &
-         is_last(size(used))
+         is_last(size(used)), on_tail(size(used))
       integer :: i, before_last, before_tail
 
       by_link = .false.
@@ -388,18 +386,15 @@ contains
          is_last = .false.
          if (allocated(rows%last_dofs)) is_last(rows%last_dofs) = free(rows%last_dofs)
          free = free .and. .not. is_last
-         if (allocated(rows%dof_on_tail)) then
-            call number_chosen(1, free .and. .not. rows%dof_on_tail, unknown, n)
-         else
-            call number_chosen(1, free, unknown, n)
-         end if
+         on_tail = .false.
+         if (allocated(rows%dof_on_tail)) on_tail = rows%dof_on_tail
+         call number_chosen(1, free .and. .not. on_tail, unknown, n)
          call number_chosen(first, enters .and. .not. rows%on_tail, unknown, n)
          before_last = n
          call number_chosen(1, is_last, unknown, n)
          constraints%last = n - before_last
          before_tail = merge(0, n, rows%keeps_all)
-         if (allocated(rows%dof_on_tail)) call number_chosen(1, free .and. rows%dof_on_tail, &
-            unknown, n)
+         call number_chosen(1, free .and. on_tail, unknown, n)
          call number_chosen(first, enters .and. rows%on_tail, unknown, n)
          constraints%link_force = [(n + i, i=1, count(found%linked))]
          n = n + size(constraints%link_force)
@@ -456,8 +451,7 @@ contains
             call resolve(found, rows, i, value, coefficient)
             where (abs(coefficient) <= negligible*largest(rows, i)) coefficient = 0.0_dp
             call links%add(value, coefficient)
-            call plain%add(rows%value(rows%start(i):rows%start(i + 1) - 1), &
-               rows%coefficient(rows%start(i):rows%start(i + 1) - 1))
+            call plain%add(rows%values_of(i), rows%coefficients_of(i))
          end do
          constraints%by_unknowns = written%renumbered(unknown)
          constraints%by_given = written%renumbered(given)

@@ -271,7 +271,8 @@ contains
       type(sum_list_type), intent(out) :: on_slave    ! (nodes of the slave, contact points)
       type(sum_list_type), intent(out) :: on_master   ! (nodes of the master, contact points)
       real(dp) :: xi
-      integer :: corner, k, nodes, per_side, s
+      logical :: is_own
+      integer :: k, nodes, per_side, s
 
       per_side = size(side(1)%nodes) - 1
       nodes = maxval(side(size(side))%nodes)
@@ -279,14 +280,9 @@ contains
       do k = 1, nodes
          s = min((k - 1)/per_side + 1, size(side))
          xi = 2.0_dp*(k - 1 - (s - 1)*per_side)/per_side - 1.0_dp
-         if (modulo(k - 1, per_side) == 0) then
-            corner = (k - 1)/per_side + 1
-            if (.not. own_point(corner)) then
-               if (.not. is_covered(k)) s = 0
-            end if
-         else if (.not. is_covered(k)) then
-            s = 0
-         end if
+         is_own = modulo(k - 1, per_side) == 0
+         if (is_own) is_own = own_point((k - 1)/per_side + 1)
+         if (.not. is_own) s = merge(s, 0, is_covered(k))
          call add_node(side, s, xi, point_of, on_slave)
       end do
       call on_master%reserve(size(master%x, 2), 2*size(master%x, 2))
