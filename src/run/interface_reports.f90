@@ -10,9 +10,8 @@ module interface_reports
    use contact_definitions, only: contact_definition_type, is_removed
    use element_kinds, only: axisymmetric, plane_stress
    use errors, only: error_type
-   use gap_areas, only: curved_gap_warning
-   use interface_warnings, only: clearance_warning, distance_warning, offset_warning, &
-      overlap_warning, tie_words, unresolved_warning
+   use interface_warnings, only: clearance_warning, curved_gap_warning, distance_warning, &
+      offset_warning, overlap_warning, tie_words, unresolved_warning
    use kinds, only: dp
    use model, only: model_type
    use steps, only: solves_heat, solves_mechanics
