@@ -229,9 +229,7 @@ contains
          holding%contact_state = contact_slip
       call sticking%factor_set(system, holding, error)
       if (allocated(error)) return
-      is_held = .true.
-      is_held(0) = .false.
-      is_held(sticking%rows%free) = .false.
+      is_held = [.false., .not. sticking%rows%is_free()]
    end subroutine hold_closed
 
    !> Closing laws of one interface.

@@ -140,10 +140,8 @@ contains
       real(dp), allocatable :: columns(:, :), matrix(:, :)
       integer :: i, j
 
-      is_free = .false.
-      is_free(rows%free) = .true.
-      was_free = .false.
-      was_free(self%rows%free) = .true.
+      is_free = rows%is_free()
+      was_free = self%rows%is_free()
       changed = pack([(i, i=1, size(is_free))], differ(rows, self%rows))
       failed = rows_per_change*size(changed) > size(self%rows%free)
       if (failed) return

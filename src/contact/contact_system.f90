@@ -101,6 +101,7 @@ module contact_system
       real(dp), allocatable :: spring(:)     !! (tail) factor of the row's displacement
    contains
       procedure :: combine
+      procedure :: is_free
    end type contact_rows_type
 
    integer, parameter :: contact_open = 0   !! gap, zone I
@@ -167,7 +168,7 @@ contains
       type(closing_law_type), intent(in) :: closing(:)    !! (m) laws of closing contact points
       type(pressure_overclosure_type), intent(in) :: soft           !! tangents of soft faces
       type(contact_rows_type) :: rows
-      logical :: is_free(system%schur%order), sought(2, size(state%contact_state))
+      logical :: sought(2, size(state%contact_state))
       integer :: point(system%schur%order), i, k   ! point: whose tangential row it is, or 0
 
       allocate (rows%spring(size(point)), source=0.0_dp)
@@ -193,24 +194,24 @@ contains
       end do
       rows%free = [pack(reshape([(system%normal(k), system%tangent(k), k=1, &
          size(state%contact_state))], shape(sought)), sought), system%link]
-      is_free = .false.
-      is_free(rows%free) = .true.
       call rows%forces%reserve(size(point), 2*size(point))
-      do i = 1, size(point)
-         k = point(i)
-         if (.not. is_free(i)) then
-            call rows%forces%add([integer ::], [real(dp) ::])
-         else if (k == 0) then
-            call rows%forces%add_value(i)
-         else if (state%contact_state(k) == contact_slip .and. .not. is_capped( &
-            state%direction(k))) then
-            call rows%forces%add([i, system%normal(k)], [1.0_dp, state%direction(k)*friction(k)])
-         else if (state%contact_state(k) == contact_stick .and. closing(k)%acts) then
-            call system%add_closing(k, closing(k)%first, closing(k)%compliance, rows%forces)
-         else
-            call rows%forces%add_value(i)
-         end if
-      end do
+      associate (is_free => rows%is_free())
+         do i = 1, size(point)
+            k = point(i)
+            if (.not. is_free(i)) then
+               call rows%forces%add([integer ::], [real(dp) ::])
+            else if (k == 0) then
+               call rows%forces%add_value(i)
+            else if (state%contact_state(k) == contact_slip .and. .not. is_capped( &
+               state%direction(k))) then
+               call rows%forces%add([i, system%normal(k)], [1.0_dp, state%direction(k)*friction(k)])
+            else if (state%contact_state(k) == contact_stick .and. closing(k)%acts) then
+               call system%add_closing(k, closing(k)%first, closing(k)%compliance, rows%forces)
+            else
+               call rows%forces%add_value(i)
+            end if
+         end do
+      end associate
    end function rows_of
 
    !> Sets the fronts of a sparse tail: those of a former one with the same unknowns and pattern.
@@ -345,17 +346,23 @@ contains
       end do
    end function combine
 
+   !> Which rows are sought.
+   pure function is_free(self)
+      class(contact_rows_type), intent(in) :: self
+      logical :: is_free(size(self%spring))           !! (tail)
+
+      is_free = .false.
+      is_free(self%free) = .true.
+   end function is_free
+
    !> Whether rows have other factors, or only one of both is free.
    pure function differ(a, b)
       type(contact_rows_type), intent(in) :: a, b
-      logical, dimension(size(a%spring)) :: differ, is_free_a, is_free_b
+      logical :: differ(size(a%spring))
       integer :: i
 
-      is_free_a = .false.
-      is_free_a(a%free) = .true.
-      is_free_b = .false.
-      is_free_b(b%free) = .true.
-      differ = (is_free_a .neqv. is_free_b) .or. (is_free_a .and. abs(a%spring - b%spring) > 0.0_dp)
+      differ = (a%is_free() .neqv. b%is_free()) .or. (a%is_free() .and. &
+         abs(a%spring - b%spring) > 0.0_dp)
       do i = 1, size(differ)
          if (.not. differ(i)) differ(i) = .not. a%forces%is_sum_of(i, b%forces, i)
       end do
@@ -366,12 +373,9 @@ contains
       class(contact_system_type), intent(in) :: self
       type(contact_rows_type), intent(in) :: rows
       type(sum_list_type) :: unheld              !! (l, tail) as from tail_motions
-      logical, dimension(self%schur%order) :: is_free, is_held
 
-      is_free = .false.
-      is_free(rows%free) = .true.
-      is_held = .not. is_free .or. rows%spring > slack*abs(self%own)
-      unheld = self%motions%unheld(is_free, is_held)
+      unheld = self%motions%unheld(rows%is_free(), .not. rows%is_free() .or. &
+         rows%spring > slack*abs(self%own))
    end function free_motions
 
    !> Whether friction is the largest whatever the pressure.
