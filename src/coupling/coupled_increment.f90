@@ -7,7 +7,7 @@ module coupled_increment
    use closing_instant, only: contact_change_type, make_tangent
    use conductance_graph, only: conductance_graph_type
    use contact_heat, only: changes_by_temperature, derivative_by_temperature, heat_by_omega, &
-      jump_derivatives, jump_derivatives_type
+      jump_derivatives, jump_derivatives_type, tail_of_heats
    use contact_operator, only: make_graph, opening_changes, opening_derivative
    use contact_system, only: contact_open, contact_state_type
    use contact_workspace, only: contact_workspace_type
@@ -359,7 +359,7 @@ contains
       type(arnoldi_type), intent(out) :: gains                 !! none found where U' does not exist
       type(contact_workspace_type) :: tangent
       type(contact_change_type) :: of_contact
-      real(dp), dimension(size(solution%jump)) :: coordinate, rate, scale, slope
+      real(dp), dimension(size(solution%jump)) :: coordinate, heats, rate, scale, slope
       real(dp), allocatable :: change(:, :), friction_heat(:, :), of_tail(:, :)
       real(dp) :: heat_scale
       integer, allocatable :: free(:), heated(:)
@@ -374,29 +374,26 @@ contains
       call make_tangent(bodies%equilibrium%contact, workspace%contact, solution%contact, tangent, &
          sound)
       if (.not. sound) return
-      associate (graph => workspace%pass%graph, index => bodies%jump_index)
+      associate (graph => workspace%pass%graph)
          coordinate = graph%coordinate_of_opening(workspace%pass%opening)
          slope = graph%derivative(coordinate)
          rate = heat_by_omega(bodies, data, workspace, solution%jump)
          scale = sqrt(of_largest(slope)/of_largest(rate))
-         allocate (of_tail(bodies%thermal%map%tail, 1), change(size(rate), 1))
+         allocate (change(size(rate), 1))
          if (size(heated) > 0) call find_heat_scale()
          call gains%begin(size(free) + size(heated), no_gain, &
             enough=merge(known_of_many, 0.0_dp, heat%schur%is_sparse() .and. &
             .not. bodies%points%vary_with_temperature()))
          do while (gains%wants_product)
-            of_tail = 0.0_dp
-            do k = 1, size(free)
-               if (index(free(k)) > 0) of_tail(index(free(k)), 1) = rate(free(k))*scale(free(k))* &
-                  gains%vector(k)
-            end do
+            heats = 0.0_dp
+            heats(free) = rate(free)*scale(free)*gains%vector(:size(free))
             if (size(heated) > 0) then
                call find_heated_product(gains%vector(size(free) + 1:))
                call gains%take([change(free, 1)/scale(free), &
                   friction_heat(heated, 1)/heat_scale])
                cycle
             end if
-            call workspace%tail%solve_columns(of_tail)
+            of_tail = tail_of_heats(bodies, workspace, heats)
             call opening_changes(bodies, graph, tangent, solution%contact, &
                heat%loads_of_tail(bodies, of_tail), change)
             change(:, 1) = slope*change(:, 1)
@@ -412,13 +409,10 @@ contains
 
          allocate (friction_heat(size(workspace%friction%heat), 1))
          heat_scale = 1.0_dp
-         of_tail = 0.0_dp
+         heats = 0.0_dp
          call find_heated_product([(1.0_dp, k=1, size(heated))])
          by_heat = norm2(change(free, 1)/scale(free))
-         do k = 1, size(free)
-            if (bodies%jump_index(free(k)) > 0) of_tail(bodies%jump_index(free(k)), 1) = &
-               rate(free(k))*scale(free(k))
-         end do
+         heats(free) = rate(free)*scale(free)
          call find_heated_product([(0.0_dp, k=1, size(heated))])
          by_omega = norm2(friction_heat(heated, 1))
          if (min(by_heat, by_omega) > 0.0_dp) heat_scale = sqrt(by_omega/by_heat)
@@ -433,12 +427,8 @@ contains
             friction_heat = 0.0_dp
             friction_heat(heated, 1) = heat_scale*vector
             entering = friction%entering_part(friction_heat)
-            if (heat%schur%is_sparse()) then
-               of_tail(:, 1) = of_tail(:, 1) + heat%friction_on_tail(bodies, entering(:, 1))
-            else
-               of_tail = of_tail + product_of(heat%friction_heat, entering)
-            end if
-            call workspace%tail%solve_columns(of_tail)
+            of_tail = tail_of_heats(bodies, workspace, heats, heat%friction_on_tail(bodies, &
+               entering(:, 1)))
             load = heat%loads_of_tail(bodies, of_tail)
             if (.not. heat%schur%is_sparse()) load = load + product_of(heat%friction_load, entering)
             call opening_changes(bodies, workspace%pass%graph, tangent, solution%contact, load, &
