@@ -176,18 +176,13 @@ contains
 
    !> Displacement below which none is a scale to measure by. Where bodies are at their initial
    !> temperature, the rounding of that temperature strains them.
-   pure real(dp) function least_displacement(model, temperature)
+   pure real(dp) function least_displacement(bodies, model, temperature)
+      type(reduced_bodies_type), intent(in) :: bodies
       type(model_type), intent(in) :: model
       real(dp), intent(in) :: temperature(:)
-      real(dp) :: expansion
-      integer :: i
 
-      expansion = 0.0_dp
-      do i = 1, size(model%materials)
-         expansion = max(expansion, maxval(abs(model%materials(i)%expansion)))
-      end do
-      least_displacement = extent_of(model%mesh%coordinates)*max(least_strain, noise*expansion* &
-         max(maxval(abs(temperature)), maxval(abs(model%initial_temperature))))
+      least_displacement = extent_of(model%mesh%coordinates)*max(least_strain, noise* &
+         bodies%largest_expansion*maxval(abs([temperature, model%initial_temperature])))
    end function least_displacement
 
    !> Reactions, force balance, and the contact conditions on the recovered displacements.
@@ -203,7 +198,7 @@ contains
       real(dp) :: dropped, least, positions(2, size(bodies%points%slave)), stiffness
       logical :: along_x
 
-      least = least_displacement(model, next%temperature)
+      least = least_displacement(bodies, model, next%temperature)
       scales%length = max(bodies%largest_displacement(next%displacement), least, tiny(1.0_dp), &
          bodies%equilibrium%contact%least_length/noise)
       if (size(bodies%points%initial_gap) > 0) scales%length = max(scales%length, noise*maxval( &
