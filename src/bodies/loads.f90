@@ -1,6 +1,5 @@
 !> All loads and supports of a model at the present instant.
 module loads
-   use amplitudes, only: amplitude_type
    use element_kinds, only: axisymmetric, element_node_count
    use kinds, only: dp
    use load_histories, only: load_history_type, step_clock_type

@@ -572,10 +572,14 @@ contains
    pure real(dp) function largest_displacement(self, displacement) result(largest)
       class(reduced_bodies_type), intent(in) :: self
       real(dp), intent(in) :: displacement(:)                !! (2 nodes) [length]
-      real(dp) :: in_plane(size(displacement))
+      real(dp), allocatable :: in_plane(:)
 
+      if (.not. allocated(self%points%along_z)) then
+         largest = maxval(abs(displacement))
+         return
+      end if
       in_plane = displacement
-      if (allocated(self%points%along_z)) in_plane(self%points%along_z) = 0.0_dp
+      in_plane(self%points%along_z) = 0.0_dp
       largest = maxval(abs(in_plane))
    end function largest_displacement
 

@@ -183,7 +183,8 @@ contains
          return
       else if (.not. allocated(matrix_b%value)) then
          combined = matrix_a
-         if (allocated(matrix_a%value)) combined%value = a*matrix_a%value
+         if (abs(a - 1.0_dp) > 0.0_dp .and. allocated(matrix_a%value)) combined%value = &
+            a*matrix_a%value
          return
       end if
       entries = 0
