@@ -32,26 +32,30 @@ module contact_workspace
       type(compliance_type), allocatable :: compliance(:)   !! (interfaces)
    end type kept_compliances_type
 
-   !> Data of the increment, and the factors for the active set of the last solution.
-   type :: contact_workspace_type
+   !> What the increment applies, and the laws under its load.
+   type :: contact_conditions_type
       real(dp), allocatable :: initial_gap(:)     !! (m) h [length]
       type(friction_law_type), allocatable :: friction(:)   !! (m) of nodal forces
       type(pressure_overclosure_type) :: soft               !! tangents of soft faces
       logical, allocatable :: removed(:)          !! (m) open whatever the gap
       real(dp) :: load_scale = 0.0_dp !! largest force that the load is condensed of [force]
+      real(dp), allocatable :: least_drive(:) !! (tail) resultants that count as none [force]
+      type(closing_law_type), allocatable :: closing(:) !! (m) laws of closing contact points
+      !> (tail) relative displacements that unconstrained motions are least from
+      real(dp), allocatable :: anchor(:)
+   end type contact_conditions_type
+
+   !> These, and the factors for the active set of the last solution.
+   type, extends(contact_conditions_type) :: contact_workspace_type
       !> Largest sum of the terms that make a force of the last solution, S d - c, without their
       !> signs: what its rounding goes by where they cancel, as in a body that contact moves [force]
       real(dp) :: largest_term = 0.0_dp
-      real(dp), allocatable :: least_drive(:) !! (tail) resultants that count as none [force]
       !> Stiffness that holds the unsupported motions softly, 0 for none [force/length]
       real(dp) :: hold = 0.0_dp
-      type(closing_law_type), allocatable :: closing(:) !! (m) laws of closing contact points
       logical :: keeps_laws = .false.             !! they do not settle in this increment: they stay
       !> Change of a slip by which laws that have settled still differ, beside rounding; above 0
       !> where faces slide, whose places are known no better [length]
       real(dp) :: same_slip = 0.0_dp
-      !> (tail) relative displacements that unconstrained motions are least from
-      real(dp), allocatable :: anchor(:)
       !> (tail, 2) displacements of the last solution on a sparse tail, and S times these
       real(dp), allocatable :: known(:, :)
       type(contact_rows_type) :: rows             !! rows of the active set
@@ -113,14 +117,7 @@ contains
       class(contact_workspace_type), intent(in) :: self  !! of the first trial
       type(contact_workspace_type) :: work               !! nothing factored
 
-      work%initial_gap = self%initial_gap
-      work%friction = self%friction
-      work%removed = self%removed
-      work%soft = self%soft
-      work%load_scale = self%load_scale
-      work%least_drive = self%least_drive
-      work%closing = self%closing
-      work%anchor = self%anchor
+      work%contact_conditions_type = self%contact_conditions_type
    end function another
 
    !> Tangential motion of a contact point since friction acts on it in this increment.
