@@ -33,7 +33,7 @@ contains
    end subroutine keep_restart
 
    !> Brings a run to where its arrays in a table were kept.
-   !> Errors: as simulation_type's reduce.
+   !> Errors: as simulation_type's take_back.
    subroutine bring_to(model, simulation, table, error)
       type(model_type), intent(in) :: model
       type(simulation_type), intent(inout) :: simulation     !! a fresh run, started
@@ -58,12 +58,8 @@ contains
             state%sources%film = loads%film_matrix()
          end if
          state%force_load = loads%nodal_forces()
-         if (allocated(state%wear)) call simulation%bodies%wear_to(state%wear)
-         if (allocated(state%faces_at)) call simulation%place_faces(model, state%faces_at, error)
-         if (allocated(error) .or. .not. allocated(state%operators_at)) return
-         call simulation%bodies%move_operators(model, state%operators_at, state%tangent)
       end associate
-      call simulation%reduce(model, error)
+      call simulation%take_back(model, error)
    end subroutine bring_to
 
    !> All of a run, in either direction; it forgets the loads that it has solved.
