@@ -63,7 +63,7 @@ module body_pieces
 
 contains
 
-   !> Divides the bodies, if they are to be divided.
+   !> Divides the bodies.
    pure subroutine divide(self, is_bound, is_prescribed, components)
       class(body_division_type), intent(inout) :: self   !! its graph in
       logical, intent(in) :: is_bound(:)                !! (nodes) kept, since constraints bind them
@@ -73,7 +73,6 @@ contains
       logical :: is_kept(size(is_bound))
       integer :: i
 
-      if (.not. allocated(self%graph%value)) return
       is_kept = is_bound
       if (allocated(self%is_on_face)) is_kept = is_bound .or. self%is_on_face
       if (allocated(self%is_bound)) then

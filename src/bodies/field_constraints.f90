@@ -109,31 +109,29 @@ contains
       type(linear_constraints_type), intent(out) :: constraints
       type(body_division_type), intent(inout), optional :: division
       logical :: is_bound(rows%dofs/rows%components), is_divided, is_prescribed(rows%dofs)
-      integer :: i, k
+      integer :: i
 
       is_divided = .false.
       if (present(division)) is_divided = allocated(division%graph%value)
-      if (is_divided) then
-         is_bound = .not. used(rows%components::rows%components)
-         if (allocated(rows%last_dofs)) is_bound((rows%last_dofs + 1)/2) = .true.
-         is_prescribed = .false.
-         do i = 1, rows%count
-            associate (values => rows%values_of(i))
-               if (rows%origin(i)%kind == of_support .and. .not. division%cuts_bodies()) then
-                  is_prescribed(values(1)) = .true.
-                  cycle
-               end if
-               do k = 1, size(values)
-                  if (values(k) <= rows%dofs) is_bound((values(k) - 1)/rows%components + 1) = .true.
-               end do
-            end associate
-         end do
-         call division%divide(is_bound, is_prescribed, rows%components)
-         rows%keeps_all = division%is_tail()
-         call eliminate(rows, used .and. division%piece == 0, constraints)
-      else
+      if (.not. is_divided) then
          call eliminate(rows, used, constraints)
+         return
       end if
+      is_bound = .not. used(rows%components::rows%components)
+      if (allocated(rows%last_dofs)) is_bound((rows%last_dofs + 1)/2) = .true.
+      is_prescribed = .false.
+      do i = 1, rows%count
+         associate (values => rows%values_of(i))
+            if (rows%origin(i)%kind == of_support .and. .not. division%cuts_bodies()) then
+               is_prescribed(values(1)) = .true.
+            else
+               is_bound((pack(values, values <= rows%dofs) - 1)/rows%components + 1) = .true.
+            end if
+         end associate
+      end do
+      call division%divide(is_bound, is_prescribed, rows%components)
+      rows%keeps_all = division%is_tail()
+      call eliminate(rows, used .and. division%piece == 0, constraints)
    end subroutine eliminate_divided
 
    !> The rows of the temperatures.

@@ -64,7 +64,6 @@ contains
       self%start = initial
       self%target = initial
       self%value = initial
-      allocate (self%on_total_time(size(amplitudes)))
       self%on_total_time = amplitudes%total_time
    end subroutine prepare
 

@@ -112,7 +112,8 @@ contains
       outer = edges(1)
       ends = ends_of_pieces(size(profile%s), profile%cuts)
       do i = 1, size(ends), 2
-         call add_contact_edges(some_of(profile, [(k, k=ends(i), ends(i + 1))]), edges, found, outer)
+         call add_contact_edges(some_of(profile, [(k, k=ends(i), ends(i + 1))]), edges, found, &
+            outer)
       end do
    end subroutine contact_edges
 

@@ -1,6 +1,6 @@
 !> How the contact, and with it the heat of friction, follows its load at given conductances. The
-!> heats q that contact points make are found from the contact state under q, q = Q(q); a change of the condensed load by
-!> dc at constant q changes them by
+!> heats q that contact points make are found from the contact state under q, q = Q(q); a change of
+!> the condensed load by dc at constant q changes them by
 !>
 !>    dq = (I - Q')^-1 (dQ/dc) dc,
 !>
