@@ -134,8 +134,14 @@ contains
          allocated(self%faces_at)) then
          self%mechanical%division%graph = joined_nodes(model)
          if (allocated(self%faces_at) .and. .not. has_sparse_tail(model, &
-            real(size(self%points%slave), dp))) self%mechanical%division%is_on_face = &
-            sliding_nodes(self%interfaces, size(model%mesh%node_number))
+            real(size(self%points%slave), dp))) then
+            allocate (self%mechanical%division%is_on_face(size(model%mesh%node_number)), &
+               source=.false.)
+            do i = 1, size(self%interfaces)
+               if (self%interfaces(i)%follows_sliding) self%mechanical%division%is_on_face( &
+                  self%interfaces(i)%face_node) = .true.
+            end do
+         end if
          self%thermal%division = self%mechanical%division
       end if
       self%thermal%changes = any(model%steps%is_transient) .and. &
@@ -143,19 +149,6 @@ contains
       self%largest_expansion = maxval([(maxval(abs(model%materials(model%sections(i)%material) &
          %expansion)), i=1, size(model%sections))])
    end subroutine prepare
-
-   !> Nodes of faces that slide.
-   pure function sliding_nodes(interfaces, nodes) result(slides)
-      type(contact_points_type), intent(in) :: interfaces(:)
-      integer, intent(in) :: nodes
-      logical :: slides(nodes)
-      integer :: i
-
-      slides = .false.
-      do i = 1, size(interfaces)
-         if (interfaces(i)%follows_sliding) slides(interfaces(i)%face_node) = .true.
-      end do
-   end function sliding_nodes
 
    !> Which nodes elements, springs and trusses join.
    pure function joined_nodes(model) result(graph)

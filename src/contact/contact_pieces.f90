@@ -8,7 +8,6 @@ module contact_pieces
    use kinds, only: dp
    use mesh, only: mesh_type
    use mortar_segments, only: hats_of
-   use sum_lists, only: sum_list_type
    use surface_chains, only: surface_chain_type
    use text, only: to_text
    implicit none
@@ -110,7 +109,7 @@ contains
    pure subroutine add_pieces(pieces, points)
       type(contact_points_type), intent(in) :: pieces(:)
       type(contact_points_type), intent(inout) :: points      ! the first of them
-      integer :: behind, i
+      integer :: behind, i, k   ! behind: contact points before a piece
 
       call join_rows(pieces%contact_row_type, points)
       associate (n => size(pieces))
@@ -129,7 +128,11 @@ contains
             behind = points%cuts(i - 1)
             call points%slave_mean%add_sums(pieces(i)%slave_mean)
             call points%master_mean%add_sums(pieces(i)%master_mean)
-            call add_shifted(pieces(i)%at_face_nodes, behind, points%at_face_nodes)
+            associate (own => pieces(i)%at_face_nodes)
+               do k = 1, own%count
+                  call points%at_face_nodes%add(own%values_of(k) + behind, own%coefficients_of(k))
+               end do
+            end associate
             ! Where pieces touch, rounding must not let s fall.
             points%arc_length(behind + 1:) = max(points%arc_length(behind + 1:), &
                points%arc_length(behind))
@@ -137,18 +140,6 @@ contains
       end associate
       if (allocated(points%mortar%segments)) call add_segments(pieces, points)
    end subroutine add_pieces
-
-   !> Adds sums over contact points that are behind others.
-   pure subroutine add_shifted(sums, behind, all_sums)
-      type(sum_list_type), intent(in) :: sums
-      integer, intent(in) :: behind                           ! contact points before
-      type(sum_list_type), intent(inout) :: all_sums
-      integer :: k
-
-      do k = 1, sums%count
-         call all_sums%add(sums%values_of(k) + behind, sums%coefficients_of(k))
-      end do
-   end subroutine add_shifted
 
    !> The segments of all pieces.
    pure subroutine add_segments(pieces, points)

@@ -86,7 +86,10 @@ contains
             k = side(i)%nodes(q)
             if (allocated(foot(k)%nodes)) cycle
             xi = 2.0_dp*(q - 1)/(slave%side_nodes - 1) - 1.0_dp
-            opposite = opposite_near(side(i), xi)
+            opposite = opposite_at(side(i), xi)
+            ! Also one whose end its normal nearly meets.
+            if (opposite == 0) opposite = opposite_at(side(i), max(xi - 2*end_reach, -1.0_dp))
+            if (opposite == 0) opposite = opposite_at(side(i), min(xi + 2*end_reach, 1.0_dp))
             if (opposite == 0) cycle
             facing = side_positions(opposite, line%side_nodes, size(s))
             eta = 0.0_dp
@@ -101,17 +104,6 @@ contains
          end do
       end do
    end subroutine find_feet
-
-   !> Side of the master opposite a node of the slave, also one whose end its normal nearly meets; 0
-   !> for none.
-   pure integer function opposite_near(side, xi) result(opposite)
-      type(slave_side_type), intent(in) :: side   ! of the slave
-      real(dp), intent(in) :: xi                  ! the node's coordinate there
-
-      opposite = opposite_at(side, xi)
-      if (opposite == 0) opposite = opposite_at(side, max(xi - 2*end_reach, -1.0_dp))
-      if (opposite == 0) opposite = opposite_at(side, min(xi + 2*end_reach, 1.0_dp))
-   end function opposite_near
 
    !> Gives contact points the nodes of the master's sides; its nodes have contact quantities
    !> between those of the contact points beside them.

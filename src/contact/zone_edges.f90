@@ -168,7 +168,9 @@ contains
       carries = carries_alone(profile, k)
       associate (s => profile%s, gap => profile%gap)
          if (carries) edge = s(k) + (s(k + 1) - s(k))*gap(k)/(gap(k) - gap(k + 1))
-         last = k + count_open(profile%contact_state(k + 1:min(k + 4, size(gap))))
+         ! The first closed one behind k ends the open ones, of which four count.
+         last = k - 1 + findloc([profile%contact_state(k + 1:min(k + 4, size(gap))) /= &
+            contact_open, .true.], .true., dim=1)
          do while (last > k + 1)
             first = max(k + 1, last - 2)
             is_near = profile%hat_spacings == 0 .or. last == k + 2 .or. s(last) - s(k + 1) <= &
@@ -194,14 +196,6 @@ contains
             count(states(max(k - 1, 1):min(k + 1, size(states))) /= contact_open) == 1
       end associate
    end function carries_alone
-
-   !> Number of open contact points before the first closed one.
-   pure integer function count_open(contact_state) result(number)
-      integer, intent(in) :: contact_state(:)
-
-      number = findloc(contact_state /= contact_open, .true., dim=1) - 1
-      if (number < 0) number = size(contact_state)
-   end function count_open
 
    !> Edge beyond contact point k: the largest zero of the parabola through gap^(2/3) at three
    !> contact points, or where it is least; of the straight line through two.
