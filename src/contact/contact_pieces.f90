@@ -12,7 +12,7 @@ module contact_pieces
    use text, only: to_text
    implicit none
    private
-   public :: join_pieces
+   public :: join_pieces, line_starts
 
    !> Part of the length of the face by which the ends of pieces beside each other are rounding.
    real(dp), parameter :: rounding = 1.0e-9_dp
@@ -31,8 +31,13 @@ contains
       type(error_type), allocatable, intent(out) :: error
       type(contact_points_type), allocatable :: sorted(:)
       integer, allocatable :: order(:)
+      real(dp) :: start(size(slaves))
+      integer :: k
 
-      call begin_lines(mesh, slaves, line, pieces)
+      start = line_starts(mesh, slaves)
+      do k = 1, size(line)
+         if (line(k) > 1) pieces(k)%arc_length = pieces(k)%arc_length + start(line(k))
+      end do
       call sort_pieces(line, pieces, order)
       sorted = pieces(order)
       call check_order(mesh, definition, sorted, error)
@@ -43,28 +48,23 @@ contains
       if (allocated(points%is_open_corner)) points%is_open_corner = open_corners(line, pieces)
    end subroutine join_pieces
 
-   !> Lets s go on from a line to the next one, straight on between them.
-   subroutine begin_lines(mesh, slaves, line, pieces)
+   !> Where s begins on each line: it goes on from one to the next, straight on between them.
+   function line_starts(mesh, lines) result(start)
       type(mesh_type), intent(in) :: mesh
-      type(surface_chain_type), intent(in) :: slaves(:)
-      integer, intent(in) :: line(:)
-      type(contact_points_type), intent(inout) :: pieces(:)
-      real(dp) :: start
-      integer :: i, k
+      type(surface_chain_type), intent(in) :: lines(:)
+      real(dp) :: start(size(lines))                          !! [length]
+      integer :: i
 
-      start = 0.0_dp
-      do i = 2, size(slaves)
-         associate (before => mesh%coordinates(:, slaves(i - 1)%nodes), &
-            first => mesh%coordinates(:, slaves(i)%nodes(1)))
-            associate (s => arc_lengths(before, slaves(i - 1)%side_nodes, slaves(i - 1)%closed))
-               start = start + s(size(s)) + norm2(first - before(:, size(s)))
+      start(:1) = 0.0_dp
+      do i = 2, size(lines)
+         associate (before => mesh%coordinates(:, lines(i - 1)%nodes), &
+            first => mesh%coordinates(:, lines(i)%nodes(1)))
+            associate (s => arc_lengths(before, lines(i - 1)%side_nodes, lines(i - 1)%closed))
+               start(i) = start(i - 1) + s(size(s)) + norm2(first - before(:, size(s)))
             end associate
          end associate
-         do k = 1, size(line)
-            if (line(k) == i) pieces(k)%arc_length = pieces(k)%arc_length + start
-         end do
       end do
-   end subroutine begin_lines
+   end function line_starts
 
    !> The pieces with contact points, along each line of the slave.
    pure subroutine sort_pieces(line, pieces, order)

@@ -14,6 +14,7 @@ module sliding_faces
    use chain_geometry, only: arc_lengths, chain_tangents, edge_lengths, tributary_areas
    use contact_definitions, only: contact_definition_type, pairing_nodes, pairing_surfaces
    use contact_pairs, only: find_opposite_points
+   use contact_pieces, only: line_starts
    use contact_points, only: contact_points_type
    use element_kinds, only: axisymmetric
    use errors, only: error_type, set_error, status_deck
@@ -137,7 +138,7 @@ contains
       real(dp), intent(in) :: thickness
       integer, intent(in) :: master_nodes(:)                  ! of its line, or the reference node
       type(contact_points_type), intent(inout) :: points      ! empty
-      real(dp) :: section, start
+      real(dp) :: section, start(size(slaves))
       integer :: i, k, step
 
       points%name = definition%name
@@ -159,21 +160,17 @@ contains
       points%to_end = [(huge(1.0_dp), i=1, 2*size(slaves))]
       points%at_corner = [(.false., i=1, 2*size(slaves))]
       allocate (points%arc_length(0), points%edge(0), points%weight(0), points%tangent(2, 0))
-      start = 0.0_dp
+      start = line_starts(mesh, slaves)
       do i = 1, size(slaves)
          associate (x => mesh%coordinates(:, slaves(i)%nodes), n => slaves(i)%side_nodes)
             associate (s => arc_lengths(x, n, .false.), edge => edge_lengths(x, n, .false.), &
                weight => tributary_areas(x(:, ::step), merge(n, 2, step == 1), .false., &
                section), along => chain_tangents(x, n, .false.))
-               points%arc_length = [points%arc_length, start + s(::step)]
+               points%arc_length = [points%arc_length, start(i) + s(::step)]
                points%edge = [points%edge, edge(::step)]
                points%weight = [points%weight, weight]
                points%tangent = reshape([points%tangent, along(:, ::step)], &
                   [2, size(points%weight)])
-               start = start + s(size(s))
-               ! Straight on to the next line.
-               if (i < size(slaves)) start = start + norm2(mesh%coordinates(:, &
-                  slaves(i + 1)%nodes(1)) - x(:, size(s)))
             end associate
          end associate
       end do
