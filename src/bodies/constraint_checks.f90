@@ -114,19 +114,11 @@ contains
                name = ''
             end select
          end associate
-         call join_name(names, name)
+         if (len(name) == 0 .or. index(names//' and ', name//' and ') > 0) cycle
+         if (len(names) > 0) names = names//' and '
+         names = names//name
       end do
    end subroutine name_origins
-
-   !> Adds a name to names joined by "and", once.
-   pure subroutine join_name(names, name)
-      character(:), allocatable, intent(inout) :: names
-      character(*), intent(in) :: name
-
-      if (len(name) == 0 .or. index(names//' and ', name//' and ') > 0) return
-      if (len(names) > 0) names = names//' and '
-      names = names//name
-   end subroutine join_name
 
    !> Sees whether the values that supports prescribe now satisfy the ties they leave no choice, and
    !> leave gaps at contact points that they move.

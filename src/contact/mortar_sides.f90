@@ -113,22 +113,14 @@ contains
       tangent = chain_tangents(line%x, line%side_nodes, line%closed)
       n = size(tangent, 2)
       if (line%side_nodes == 2 .and. .not. line%closed .and. n > 2) then
-         tangent(:, [1, n]) = mirrored(tangent(:, [2, n - 1]), tangent(:, [1, n]))
+         ! Mirrored in the tangents of the ends.
+         associate (ends => tangent(:, [1, n]), before => tangent(:, [2, n - 1]))
+            tangent(:, [1, n]) = 2*spread(sum(before*ends, dim=1), 1, 2)*ends - before
+         end associate
       end if
       normal(1, :) = line%outward*tangent(2, :)
       normal(2, :) = -line%outward*tangent(1, :)
    end function outward_normals
-
-   !> Vectors mirrored in axes.
-   pure function mirrored(vectors, axes)
-      real(dp), intent(in) :: vectors(:, :), axes(:, :)   ! (2, n); axes are unit vectors
-      real(dp) :: mirrored(2, size(vectors, 2))
-      integer :: k
-
-      do k = 1, size(vectors, 2)
-         mirrored(:, k) = 2*dot_product(vectors(:, k), axes(:, k))*axes(:, k) - vectors(:, k)
-      end do
-   end function mirrored
 
    !> Finds where the segments of a slave's side end, its own ends and where corners of the master
    !> lie opposite, and what lies opposite them.

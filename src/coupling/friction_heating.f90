@@ -36,7 +36,6 @@ module friction_heating
       real(dp), allocatable :: slip_before(:)
    contains
       procedure :: load
-      procedure :: load_at_start
       procedure :: entering
       procedure :: entering_part
       procedure :: late_start
@@ -111,16 +110,8 @@ contains
       class(friction_heating_type), intent(in) :: self
       real(dp) :: load(size(self%old))                     !! (n) [power]
 
-      load = self%load_at_start() + self%parts(2, :)*self%heat
+      load = self%parts(1, :)*self%old + self%parts(2, :)*self%heat
    end function load
-
-   !> The part of it that is known before the increment is solved.
-   pure function load_at_start(self) result(load)
-      class(friction_heating_type), intent(in) :: self
-      real(dp) :: load(size(self%old))                     !! (n) [power]
-
-      load = self%parts(1, :)*self%old
-   end function load_at_start
 
    !> Part of heats at the end, or of their changes, in the load.
    pure function entering_part(self, friction_heat)

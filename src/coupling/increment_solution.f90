@@ -103,8 +103,9 @@ contains
       real(dp), allocatable :: sources(:)   ! (nodes) right-hand side of (3.4) over a1 [power]
 
       sources = trial%data%equation%history(bodies%thermal%matrix)
+      ! Heat of friction is known as far as it is made at the start.
       if (allocated(trial%data%friction%heat)) sources = sources + nodal_friction_heat(bodies, &
-         trial%data%friction%load_at_start())
+         trial%data%friction%parts(1, :)*trial%data%friction%old)
       associate (data => trial%data, temperature => trial%next%temperature, &
          given => loads%temperature%value)
          if (only_places(bodies, heat, trial)) call heat%condense_inside(bodies%thermal, sources, &
