@@ -170,8 +170,8 @@ contains
       real(dp), intent(in) :: master_normal(:, :)  ! (2, nodes)
       real(dp), intent(in) :: section         ! thickness, 0 about an axis [length]
       type(segment_sums_type), intent(inout) :: sums
-      real(dp) :: along(2), area, ends(2), eta, factor(0:2), hat(2), normals(2, 2), radius, &
-         weighted(2), xi
+      real(dp) :: along(2), area, between(2), ends(2), eta, factor(0:2), hat(2), normals(2, 2), &
+         radius, weighted(2), xi
       real(dp) :: psi(size(side%nodes)), psi_master(master%side_nodes)
       real(dp) :: of_slave(2, size(psi), 0:2), of_master(2, size(psi_master), 0:2)
       real(dp), dimension(2, size(psi_master)) :: facing_normal, x
@@ -205,7 +205,9 @@ contains
          normals(:, 1) = matmul(side%normal, psi)
          normals(:, 2) = matmul(facing_normal, psi_master)
          if (master%leads) normals(:, 1) = -normals(:, 2)
-         factor = [1.0_dp, midway(normals(:, 1), normals(:, 2))]
+         ! The unit normal midway between both, which may have any length.
+         between = normals(:, 1)/norm2(normals(:, 1)) - normals(:, 2)/norm2(normals(:, 2))
+         factor = [1.0_dp, between/norm2(between)]
          do k = 0, 2
             weighted = factor(k)*area*hat
             do i = 1, size(psi)
@@ -253,15 +255,6 @@ contains
          end associate
       end do
    end subroutine find_positions
-
-   !> Unit normal midway between those of slave and master, which may have any length.
-   pure function midway(slave, master) result(normal)
-      real(dp), intent(in) :: slave(2), master(2)
-      real(dp) :: normal(2)
-
-      normal = slave/norm2(slave) - master/norm2(master)
-      normal = normal/norm2(normal)
-   end function midway
 
    !> Near the edge p = p_k sqrt((a - x)/(a - x_k)) and gap = C (x - a)^1.5.
    pure real(dp) function conductance_at(self, t)

@@ -38,7 +38,6 @@ module friction_heating
       procedure :: load
       procedure :: entering
       procedure :: entering_part
-      procedure :: late_start
       procedure :: found
       procedure :: of_positions
       procedure :: changes
@@ -129,16 +128,6 @@ contains
 
       entering = merge(self%heat, self%old, self%parts(2, :) > 0.0_dp)
    end function entering
-
-   !> How much more heat enters the faces just behind the start of the increment than before it:
-   !> slip has its mean rate from there on.
-   pure function late_start(self, before) result(more)
-      class(friction_heating_type), intent(in) :: self
-      real(dp), intent(in) :: before(:)                    !! (n) heats that the state has [power]
-      real(dp) :: more(size(self%old))                     !! (n) [power]
-
-      more = merge(self%old, self%heat, self%parts(1, :) > 0.0_dp) - before
-   end function late_start
 
    !> Heats that a contact state makes at the end of the increment.
    pure function found(self, bodies, contact) result(heat)

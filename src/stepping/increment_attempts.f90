@@ -504,9 +504,10 @@ contains
       associate (data => attempt%data, next => attempt%next)
          next%stored = data%equation%stored_rate(run%bodies%capacity, next%temperature)
          associate (a => data%equation%scheme%a, b => data%equation%scheme%b)
+            ! Heat of slip has its mean rate from just behind the start on: so much more enters.
             if (allocated(data%friction%heat)) next%stored = next%stored - b(1)/a(1)* &
-               nodal_friction_heat(run%bodies, data%friction%late_start( &
-               attempt%before%friction_heat))
+               nodal_friction_heat(run%bodies, merge(data%friction%old, data%friction%heat, &
+               data%friction%parts(1, :) > 0.0_dp) - attempt%before%friction_heat)
          end associate
       end associate
    end subroutine find_stored
