@@ -106,7 +106,7 @@ contains
       ! coordinate means nothing.
       associate (z => point%coordinate, counts => self%part > 0.0_dp)
          rate = [(coordinate_rate(pass%graph(k), z(k), self%body(k), self%length), k=1, &
-            size(rate))]/max(self%part, tiny(1.0_dp))
+            size(rate))]/merge(self%part, 1.0_dp, counts)
          equation%advance = merge(rate*pass%graph%advance(z), 1.0_dp, counts)
          equation%slope = merge(rate*pass%graph%derivative(z), 0.0_dp, counts)
          equation%by_parameter = -pass%by_factor
