@@ -196,7 +196,7 @@ contains
       if (allocated(problem%division%piece)) then
          call reduce_pieces(self, problem, added, solver_kind, error)
          if (allocated(error) .or. problem%division%is_tail()) return
-         lower = problem%map%transform(self%kept, problem%map%link_stiffness(problem%matrix))
+         lower = problem%map%transform_kept(self%kept, problem%map%link_stiffness(problem%matrix))
       else
          lower = problem%matrix_of_unknowns(added)
       end if

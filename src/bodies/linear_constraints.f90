@@ -15,6 +15,7 @@
 !> The last unknowns, the tail, are those that contact acts on, and the forces. With the former zero
 !> the bodies are welded; the reduced problem on the tail is eq. (2.4) solved partially.
 module linear_constraints
+   use blas_lapack, only: dgemm, dsyr2k
    use constraint_rows, only: constraint_rows_type, elimination_type, largest, least_coefficients, &
       negligible, resolve, row_origin_type, write_values
    use kinds, only: dp
@@ -54,6 +55,7 @@ module linear_constraints
       procedure :: load
       procedure :: link_stiffness
       procedure :: transform
+      procedure :: transform_kept
       procedure :: between
       procedure :: leading_nodes
       procedure :: tail_index
@@ -61,6 +63,8 @@ module linear_constraints
       procedure :: is_given
       procedure :: moves
    end type linear_constraints_type
+
+   integer, parameter :: most_terms = 16   !! of a row of T that is not full
 
 contains
 
@@ -245,6 +249,177 @@ contains
       if (size(self%link_force) > 0) lower = linear_combination(1.0_dp, lower, 1.0_dp, &
          links(self, stiffness))
    end function transform
+
+   !> The same of a matrix that pieces of bodies leave between the nodes of faces, where it is full:
+   !> T is full, too, where mortar points write the slave's values w by all others. With o for the
+   !> rest
+   !>
+   !>    T^T A T = T_w^T Y + Y^T T_w + T_o^T A_oo T_o,   Y = A_ww T_w/2 + A_wo T_o.
+   !>
+   !> What no written value is joined to stays sparse.
+   pure function transform_kept(self, matrix, stiffness) result(lower)
+      class(linear_constraints_type), intent(in) :: self
+      type(sparse_matrix_type), intent(in) :: matrix  !! (dofs, dofs) K', symmetric, both triangles
+      real(dp), intent(in) :: stiffness(:)            !! (links) k
+      type(sparse_matrix_type) :: lower               !! (equations, equations) by rows
+      real(dp), allocatable :: half(:, :), of_others(:, :), upper(:, :), written_by(:, :)
+      integer, allocatable :: rows(:), unknown(:), written(:)
+      integer :: column_of(self%equations), i, k, last, other, place(matrix%row_count), q, row, term
+      logical, dimension(matrix%row_count) :: is_full, is_other
+
+      rows = with_terms(self%by_unknowns)
+      rows = pack(rows, matrix%row_start(rows + 1) > matrix%row_start(rows))
+      call find_full(self, matrix, rows, is_full, unknown)
+      column_of = 0
+      column_of(unknown) = [(i, i=1, size(unknown))]
+      associate (by => self%by_unknowns, n => size(unknown))
+         written = pack(rows, is_full(rows) .and. by%start(rows + 1) - by%start(rows) > most_terms)
+         place = 0
+         place(written) = [(i, i=1, size(written))]
+         allocate (half(size(written), size(written)), of_others(size(written), n), &
+            written_by(size(written), n), source=0.0_dp)
+         do q = 1, size(written)
+            i = written(q)
+            do term = by%start(i), by%start(i + 1) - 1
+               written_by(q, column_of(by%value(term))) = by%coefficient(term)
+            end do
+            do k = matrix%row_start(i), matrix%row_start(i + 1) - 1
+               associate (j => matrix%column(k))
+                  if (place(j) > 0) then
+                     half(q, place(j)) = 0.5_dp*matrix%value(k)
+                     cycle
+                  end if
+                  do term = by%start(j), by%start(j + 1) - 1
+                     associate (entry => of_others(q, column_of(by%value(term))))
+                        entry = entry + matrix%value(k)*by%coefficient(term)
+                     end associate
+                  end do
+               end associate
+            end do
+         end do
+         allocate (upper(n, n))
+         associate (m => size(written), lead => max(size(written), 1))
+            call dgemm('N', 'N', m, n, m, 1.0_dp, half, lead, written_by, lead, 1.0_dp, &
+               of_others, lead)
+            call dsyr2k('U', 'T', n, m, 1.0_dp, written_by, lead, of_others, lead, 0.0_dp, upper, &
+               max(n, 1))
+         end associate
+         is_other = is_full
+         is_other(written) = .false.
+         do q = 1, size(rows)
+            i = rows(q)
+            if (.not. is_other(i)) cycle
+            do term = by%start(i), by%start(i + 1) - 1
+               last = column_of(by%value(term))
+               associate (column => upper(:last, last), factor => by%coefficient(term))
+                  do k = matrix%row_start(i), matrix%row_start(i + 1) - 1
+                     if (.not. is_other(matrix%column(k))) cycle
+                     do other = by%start(matrix%column(k)), by%start(matrix%column(k) + 1) - 1
+                        row = column_of(by%value(other))
+                        if (row <= last) column(row) = column(row) + &
+                           by%coefficient(other)*matrix%value(k)*factor
+                     end do
+                  end do
+               end associate
+            end do
+         end do
+      end associate
+      lower = lower_of(upper, unknown, self%equations)
+      if (all(is_full(rows)) .and. size(self%link_force) == 0) return
+      lower = linear_combination(1.0_dp, lower, 1.0_dp, self%transform(outside(matrix, is_full), &
+         stiffness))
+   end function transform_kept
+
+   !> The unknowns that written values of a matrix, and those joined to them, are made of, and the
+   !> degrees of freedom that are made of these alone.
+   pure subroutine find_full(self, matrix, rows, is_full, unknown)
+      class(linear_constraints_type), intent(in) :: self
+      type(sparse_matrix_type), intent(in) :: matrix
+      integer, intent(in) :: rows(:)                  ! those with entries
+      logical, intent(out) :: is_full(:)              ! (dofs)
+      integer, allocatable, intent(out) :: unknown(:) ! ascending
+      logical :: is_joined(size(is_full)), is_part(self%equations)
+      integer :: i, k, q
+
+      is_joined = .false.
+      is_part = .false.
+      is_full = .false.
+      associate (by => self%by_unknowns, start => matrix%row_start)
+         do q = 1, size(rows)
+            i = rows(q)
+            if (by%start(i + 1) - by%start(i) <= 1) cycle
+            do k = start(i), start(i + 1) - 1
+               is_joined(matrix%column(k)) = .true.
+            end do
+         end do
+         do q = 1, size(rows)
+            i = rows(q)
+            if (.not. is_joined(i)) cycle
+            do k = by%start(i), by%start(i + 1) - 1
+               is_part(by%value(k)) = .true.
+            end do
+         end do
+         do q = 1, size(rows)
+            i = rows(q)
+            is_full(i) = .true.
+            do k = by%start(i), by%start(i + 1) - 1
+               is_full(i) = is_full(i) .and. is_part(by%value(k))
+            end do
+         end do
+      end associate
+      unknown = pack([(i, i=1, self%equations)], is_part)
+   end subroutine find_full
+
+   !> The entries of a matrix that are not in its full part.
+   pure function outside(matrix, is_full) result(rest)
+      type(sparse_matrix_type), intent(in) :: matrix
+      logical, intent(in) :: is_full(:)               ! (dofs) rows and columns of the full part
+      type(sparse_matrix_type) :: rest
+      integer :: i, k, n
+
+      rest%row_count = matrix%row_count
+      rest%column_count = matrix%column_count
+      allocate (rest%row_start, mold=matrix%row_start)
+      allocate (rest%column, mold=matrix%column)
+      allocate (rest%value, mold=matrix%value)
+      n = 0
+      do i = 1, matrix%row_count
+         rest%row_start(i) = n + 1
+         do k = matrix%row_start(i), matrix%row_start(i + 1) - 1
+            if (is_full(i) .and. is_full(matrix%column(k))) cycle
+            n = n + 1
+            rest%column(n) = matrix%column(k)
+            rest%value(n) = matrix%value(k)
+         end do
+      end do
+      rest%row_start(matrix%row_count + 1) = n + 1
+      rest%column = rest%column(:n)
+      rest%value = rest%value(:n)
+   end function outside
+
+   !> The lower triangle of a matrix that is full in some rows and columns and has no others.
+   pure function lower_of(upper, places, order) result(lower)
+      real(dp), intent(in) :: upper(:, :)             ! (n, n) upper triangle of what is full
+      integer, intent(in) :: places(:)                ! (n) its rows and columns, ascending
+      integer, intent(in) :: order
+      type(sparse_matrix_type) :: lower
+      integer :: filled, i, last, n
+
+      lower%row_count = order
+      lower%column_count = order
+      n = size(places)
+      allocate (lower%row_start(order + 1), lower%column(n*(n + 1)/2), lower%value(n*(n + 1)/2))
+      filled = 0
+      last = 0
+      do i = 1, n
+         lower%row_start(last + 1:places(i)) = filled + 1
+         lower%column(filled + 1:filled + i) = places(:i)
+         lower%value(filled + 1:filled + i) = upper(:i, i)
+         filled = filled + i
+         last = places(i)
+      end do
+      lower%row_start(last + 1:) = filled + 1
+   end function lower_of
 
    !> T, its columns in any order.
    pure function terms(self)

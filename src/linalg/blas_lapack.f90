@@ -6,7 +6,7 @@ module blas_lapack
    use kinds, only: dp
    implicit none
    private
-   public :: ddot, daxpy, dgemm, dgemv, dtrsm, dgetrf, dgetrs, dgesvd, dgeev, dgelsy, &
+   public :: ddot, daxpy, dgemm, dgemv, dsyr2k, dtrsm, dgetrf, dgetrs, dgesvd, dgeev, dgelsy, &
       dpstrf, dtrtri, ilaver, reserve_blas_memory
 
    interface
@@ -43,6 +43,15 @@ module blas_lapack
          real(dp), intent(in) :: alpha, a(lda, *), b(ldb, *), beta
          real(dp), intent(inout) :: c(ldc, *)
       end subroutine dgemm
+
+      !> C = alpha (A B^T + B A^T) + beta C, or with A^T B, a triangle of it.
+      pure subroutine dsyr2k(uplo, trans, n, k, alpha, a, lda, b, ldb, beta, c, ldc)
+         import :: dp
+         character, intent(in) :: uplo, trans
+         integer, intent(in) :: n, k, lda, ldb, ldc
+         real(dp), intent(in) :: alpha, a(lda, *), b(ldb, *), beta
+         real(dp), intent(inout) :: c(ldc, *)
+      end subroutine dsyr2k
 
       !> B = alpha A^-1 B, or with A^T, or from the right; A is a triangle.
       pure subroutine dtrsm(side, uplo, transa, diag, m, n, alpha, a, lda, b, ldb)
