@@ -61,6 +61,7 @@ module field_problem
       logical :: changes = .false.   !! whether most solutions have a matrix of their own
    contains
       procedure :: matrix_of_unknowns
+      procedure :: solves_by_steps
    end type field_problem_type
 
    !> Factors of a problem, its unknowns condensed on the tail.
@@ -245,7 +246,7 @@ contains
       else
          allocate (skyline_solver_type :: direct)
       end if
-      if (problem%changes .and. problem%map%tail == 0) then
+      if (problem%solves_by_steps()) then
          allocate (gradients)
          call move_alloc(direct, gradients%direct)
          call move_alloc(gradients, solver)
@@ -253,6 +254,14 @@ contains
          call move_alloc(direct, solver)
       end if
    end subroutine choose_solver
+
+   !> Whether solutions are found step by step, from values that are like them.
+   pure logical function solves_by_steps(self)
+      class(field_problem_type), intent(in) :: self
+
+      solves_by_steps = self%changes .and. self%map%tail == 0 .and. .not. &
+         allocated(self%division%piece)
+   end function solves_by_steps
 
    !> Reduces the bodies piece by piece; what is left is the tail, or kept for a solver, for all
    !> numberings of these pieces.
@@ -435,7 +444,8 @@ contains
       type(field_problem_type), intent(in) :: problem     !! that it is of
       type(field_load_type), intent(inout) :: load        !! receives what is condensed
       type(solved_loads_type), intent(inout) :: known     !! earlier loads of the field
-      real(dp), intent(out), optional :: welded(:)        !! (dofs) values where the tail is zero
+      !> (dofs) values where the tail is zero; where the matrix changes, first those that are like them
+      real(dp), intent(inout), optional :: welded(:)
       !> (dofs) as from condense_inside: values inside of pieces are these, and need no solution
       real(dp), intent(in), optional :: inside(:)
       real(dp) :: rest(problem%map%equations, 1), condensed(problem%map%tail, 1)
@@ -444,6 +454,17 @@ contains
       if (problem%division%is_tail()) then
          load%condensed = load%rhs(:, 1)
          if (present(welded)) welded = self%recover(problem, load, 0.0_dp*load%condensed)
+         return
+      else if (problem%solves_by_steps() .and. present(welded)) then
+         load%condensed = [real(dp) ::]
+         allocate (solution, mold=rest)
+         associate (first => welded(problem%map%leading_nodes()))
+            welded = problem%map%expand(first)
+            rest(:, 1) = load%rhs(:, 1) - problem%map%restrict(problem%matrix%multiply(welded) + &
+               self%added%multiply(welded))
+            call self%solver%condense(rest, condensed, solution)
+            welded = problem%map%expand(first + solution(:, 1), load%given)
+         end associate
          return
       end if
       call known%begin(self%numbering, self%values, self%added)
@@ -550,7 +571,7 @@ contains
    end function unit_responses
 
    !> Values of all degrees of freedom under nodal forces, the tail held, with zero prescribed
-   !> values.
+   !> values; rough ones where solutions are found step by step.
    function welded_response(self, problem, forces) result(values)
       class(field_reduction_type), intent(in) :: self
       type(field_problem_type), intent(in) :: problem     !! that it is of
@@ -558,6 +579,13 @@ contains
       real(dp) :: values(size(forces))                    !! (dofs)
       real(dp) :: condensed(problem%map%tail, 1), welded(size(forces), 1)
 
+      if (problem%solves_by_steps()) then
+         select type (solver => self%solver)
+         class is (gradient_solver_type)
+            values = problem%map%expand(solver%roughly(problem%map%restrict(forces)))
+         end select
+         return
+      end if
       call self%condense_forces(problem, reshape(forces, shape(welded)), condensed, welded)
       values = welded(:, 1)
    end function welded_response

@@ -51,6 +51,7 @@ module solution_state
       !> (4 nodes) corrections of the operators by corrections_type, now and an increment earlier
       real(dp), allocatable :: corrections(:), corrections_before(:)
       real(dp), allocatable :: displacement_before(:)   !! (2 nodes) where materials have laws
+      real(dp), allocatable :: temperature_before(:)    !! (nodes) where materials melt
       real(dp) :: increment_size = 0.0_dp           !! size of the increment [time]
       logical :: has_mechanics = .false.            !! whether mechanics was ever solved
       !> Whether the last increment solved heat by a scheme that keeps an imbalance for ever.
@@ -102,6 +103,7 @@ contains
       call reals(self, 'corrections', state%corrections)
       call reals(self, 'corrections_before', state%corrections_before)
       call reals(self, 'displacement_before', state%displacement_before)
+      call reals(self, 'temperature_before', state%temperature_before)
       call reals(self, 'extremes', state%extremes)
       call reals(self, 'displacement', state%displacement)
       call reals(self, 'faces_at', state%faces_at)

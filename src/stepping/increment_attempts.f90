@@ -387,13 +387,17 @@ contains
       type(simulation_type), intent(inout) :: run
       type(model_type), intent(in) :: model
       type(attempt_type), intent(inout) :: attempt           !! begun without melting
-      real(dp) :: rhs(size(attempt%before%temperature)), temperature(size(rhs))
+      real(dp) :: rhs(size(attempt%before%temperature)), temperature(size(rhs)), &
+         change(size(rhs))
 
       associate (bodies => run%bodies, melting => run%corrections%melting, start => &
          attempt%before%temperature, equation => attempt%data%equation, stage => attempt%stage, &
          terms => run%bodies%thermal%map%by_unknowns%start)
          temperature = start
-         call melting%begin(model, attempt%before%stored*stage%size, temperature)
+         change = 0.0_dp
+         if (allocated(attempt%before%temperature_before)) change = stage%size/ &
+            attempt%before%increment_size*(start - attempt%before%temperature_before)
+         call melting%begin(model, change, temperature)
          ! The equation of heat alone does not have that of contact points.
          if (size(bodies%points%weight) == 0) then
             call run%corrections%give(equation, attempt%next)
@@ -405,6 +409,7 @@ contains
                equation%left_film(bodies%capacity)), rhs, equation%duration, &
                terms(2:size(start) + 1) - terms(:size(start)) == 1, temperature)
          end if
+         attempt%next%temperature = temperature
          call bodies%set_melting(melting%slopes(model))
          call run%corrections%foresee_melting(model, bodies%melting, start)
          call equation%hold_heat(bodies%capacity, stage%duration, stage%temperature, &

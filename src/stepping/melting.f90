@@ -27,8 +27,8 @@ module melting
    real(dp), parameter :: rounding = 1.0e-13_dp
 
    integer, parameter :: most_sweeps = 24        !! that foresee a front
-   integer, parameter :: quiet_sweeps = 6        !! in which no node enters or leaves an interval
-   real(dp), parameter :: resting = 2.0e-5_dp    !! part of a node's latent heat that moves none
+   integer, parameter :: quiet_sweeps = 4        !! in which no node enters or leaves an interval
+   real(dp), parameter :: resting = 1.0e-4_dp    !! part of a node's latent heat that moves none
 
    !> A node of a material that melts.
    type :: melting_node_type
@@ -88,21 +88,23 @@ contains
       self%acts = size(self%nodes) > 0
    end subroutine prepare
 
-   !> Starts a stage at the heat that nodes come to if it goes on changing as it does. A node at a
-   !> solidus or liquidus is within the interval, unless its heat leads out of it.
-   pure subroutine begin(self, model, heat, temperature)
+   !> Starts a stage at temperatures that go on changing as they did. A node at a solidus or liquidus
+   !> is within the interval, unless the heat of this leads out of it.
+   pure subroutine begin(self, model, change, temperature)
       class(melting_type), intent(inout) :: self
       type(model_type), intent(in) :: model
-      real(dp), intent(in) :: heat(:)                        !! (nodes) that they gain so [energy]
+      real(dp), intent(in) :: change(:)                      !! (nodes) that goes on [temperature]
       real(dp), intent(inout) :: temperature(:)              !! (nodes) at its start, then foreseen
+      real(dp) :: start(size(temperature))
       integer :: i
 
+      start = temperature
+      temperature = start + change
       do i = 1, size(self%nodes)
          associate (node => self%nodes(i))
             associate (material => model%materials(node%material), there => temperature(node%node))
-               call melted_to(material, heat_capacity(material), there + heat(node%node)/( &
-                  heat_capacity(material)*node%volume), latent_content(material, there), node%at, &
-                  node%row)
+               call melted_to(material, heat_capacity(material), there, latent_content(material, &
+                  start(node%node)), node%at, node%row)
                there = node%at
             end associate
          end associate
@@ -112,7 +114,7 @@ contains
    !> Foresees T' at the end of a stage by sweeps to and fro over the equation of heat without
    !> melting, which solve the row of a node together with its latent heat (Gauss and Seidel). Nodes
    !> whose neighbours stay rest. They end when none has entered or left an interval for some.
-   pure subroutine foresee(self, model, matrix, rhs, duration, moves, temperature)
+   subroutine foresee(self, model, matrix, rhs, duration, moves, temperature)
       class(melting_type), intent(inout) :: self
       type(model_type), intent(in) :: model
       type(sparse_matrix_type), intent(in) :: matrix         !! (nodes, nodes) [power/temperature]
@@ -122,7 +124,7 @@ contains
       real(dp), intent(inout) :: temperature(:)              !! (nodes) from begin, then foreseen
       real(dp) :: held(size(rhs)), left_over, own, small(size(rhs))
       logical :: waits(size(rhs))
-      integer :: at(size(rhs)), i, k, l, moved, within, sweep
+      integer :: at(size(rhs)), i, k, l, moved, within, sweep, visits, solved
 
       at = 0
       small = 0.0_dp
@@ -136,12 +138,14 @@ contains
       end do
       waits = moves
       moved = 0
+      visits=0; solved=0
       do sweep = 1, most_sweeps
          if (sweep - moved > quiet_sweeps) exit
          do k = 1, size(rhs)
             i = merge(k, size(rhs) + 1 - k, modulo(sweep, 2) == 1)
             if (.not. waits(i)) cycle
             waits(i) = .false.
+            visits=visits+1
             left_over = rhs(i) - held(i)
             own = 0.0_dp
             do l = matrix%row_start(i), matrix%row_start(i + 1) - 1
@@ -149,6 +153,7 @@ contains
                if (matrix%column(l) == i) own = matrix%value(l)
             end do
             if (abs(left_over) <= small(i)) cycle
+            solved=solved+1
             associate (row => matrix%column(matrix%row_start(i):matrix%row_start(i + 1) - 1))
                waits(row) = moves(row)
             end associate
@@ -166,6 +171,7 @@ contains
             end associate
          end do
       end do
+      write(0,*) 'FORE', sweep-1, moved, visits/size(rhs), solved/size(rhs)
    end subroutine foresee
 
    !> Moves T' to a solution.

@@ -452,7 +452,11 @@ contains
       type(solution_state_type), intent(in) :: before
       type(solution_state_type), intent(inout) :: next
 
-      next%corrections = self%values
+      if (self%melting%acts) then
+         next%temperature_before = before%temperature
+      else
+         next%corrections = self%values
+      end if
       if (allocated(next%corrections_before)) deallocate (next%corrections_before)
       if (self%has_laws) then
          next%displacement_before = before%displacement
