@@ -58,10 +58,12 @@ module field_problem
       type(linear_constraints_type) :: map                    !! u = T v + B g, and the unknowns v
       integer :: numbering = 0                                !! which numbering, counted
       type(body_division_type) :: division                    !! where bodies are reduced by pieces
-      logical :: changes = .false.   !! whether most solutions have a matrix of their own
+      !> Whether most solutions have a matrix of their own, and neither pieces nor a tail; where
+      !> they have, the basis of the gradient solver
+      logical :: changes = .false.
+      type(sparse_matrix_type) :: basis
    contains
       procedure :: matrix_of_unknowns
-      procedure :: solves_by_steps
    end type field_problem_type
 
    !> Factors of a problem, its unknowns condensed on the tail.
@@ -202,9 +204,8 @@ contains
          lower = problem%matrix_of_unknowns(added)
       end if
       if (allocated(self%solver) .and. self%analysed /= self%numbering) then
-         if (.not. self%solver%is_for(lower, problem%map%tail, problem%map%last)) then
-            call self%release_tail()
-         end if
+         if (problem%changes .or. .not. self%solver%is_for(lower, problem%map%tail, &
+            problem%map%last)) call self%release_tail()
       end if
       self%analysed = self%numbering
       if (.not. allocated(self%solver)) then
@@ -246,22 +247,15 @@ contains
       else
          allocate (skyline_solver_type :: direct)
       end if
-      if (problem%solves_by_steps()) then
+      if (problem%changes) then
          allocate (gradients)
          call move_alloc(direct, gradients%direct)
+         gradients%basis = problem%basis
          call move_alloc(gradients, solver)
       else
          call move_alloc(direct, solver)
       end if
    end subroutine choose_solver
-
-   !> Whether solutions are found step by step, from values that are like them.
-   pure logical function solves_by_steps(self)
-      class(field_problem_type), intent(in) :: self
-
-      solves_by_steps = self%changes .and. self%map%tail == 0 .and. .not. &
-         allocated(self%division%piece)
-   end function solves_by_steps
 
    !> Reduces the bodies piece by piece; what is left is the tail, or kept for a solver, for all
    !> numberings of these pieces.
@@ -455,14 +449,14 @@ contains
          load%condensed = load%rhs(:, 1)
          if (present(welded)) welded = self%recover(problem, load, 0.0_dp*load%condensed)
          return
-      else if (problem%solves_by_steps() .and. present(welded)) then
+      else if (problem%changes .and. present(welded)) then
          load%condensed = [real(dp) ::]
          allocate (solution, mold=rest)
          associate (first => welded(problem%map%leading_nodes()))
             welded = problem%map%expand(first)
             rest(:, 1) = load%rhs(:, 1) - problem%map%restrict(problem%matrix%multiply(welded) + &
                self%added%multiply(welded))
-            call self%solver%condense(rest, condensed, solution)
+            call self%solver%recover(rest, condensed, solution)
             welded = problem%map%expand(first + solution(:, 1), load%given)
          end associate
          return
@@ -579,13 +573,6 @@ contains
       real(dp) :: values(size(forces))                    !! (dofs)
       real(dp) :: condensed(problem%map%tail, 1), welded(size(forces), 1)
 
-      if (problem%solves_by_steps()) then
-         select type (solver => self%solver)
-         class is (gradient_solver_type)
-            values = problem%map%expand(solver%roughly(problem%map%restrict(forces)))
-         end select
-         return
-      end if
       call self%condense_forces(problem, reshape(forces, shape(welded)), condensed, welded)
       values = welded(:, 1)
    end function welded_response

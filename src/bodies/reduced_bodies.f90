@@ -9,7 +9,7 @@ module reduced_bodies
    use conductance_laws, only: is_constant
    use contact_points, only: contact_points_type, on_axis
    use dilatation, only: dilatation_type
-   use element_kinds, only: element_node_count
+   use element_kinds, only: element_corner_count, element_node_count, side_nodes
    use equilibrium_reduction, only: equilibrium_reduction_type
    use errors, only: error_type
    use field_problem, only: field_problem_type
@@ -21,7 +21,8 @@ module reduced_bodies
    use point_materials, only: point_materials_type
    use point_rules, only: integration_rules
    use rigid_motions, only: joint_type, joints_of, unsupported_motions
-   use mesh, only: nodes_per_element
+   use linear_constraints, only: linear_constraints_type
+   use mesh, only: mesh_type, nodes_per_element
    use sparse_matrix, only: linear_combination, sparse_matrix_type, triplet_list_type
    use steps, only: load_temperature, solves_heat, solves_mechanics
    use sum_lists, only: sum_list_type
@@ -32,6 +33,8 @@ module reduced_bodies
    public :: reduced_bodies_type
 
    real(dp), parameter :: far = 1.0e3_dp        !! ratio of stiffnesses that are far apart
+   !> Part of each corner in temperatures between them: 0.4 is best for K, 0.15 for C
+   real(dp), parameter :: of_corner = 0.3_dp
 
    !> The reduced bodies.
    type :: reduced_bodies_type
@@ -144,8 +147,6 @@ contains
          end if
          self%thermal%division = self%mechanical%division
       end if
-      self%thermal%changes = any(model%steps%is_transient) .and. &
-         any(melts(model%materials(model%sections%material)))
       self%largest_expansion = maxval([(maxval(abs(model%materials(model%sections(i)%material) &
          %expansion)), i=1, size(model%sections))])
    end subroutine prepare
@@ -359,9 +360,42 @@ contains
          call constrain_temperatures(used, held_temperature, points, &
             slave_is_stiffer(model, points, .false.), self%thermal%map, self%thermal%division)
          self%thermal%numbering = self%thermal%numbering + 1
+         self%thermal%changes = any(model%steps%is_transient) .and. self%thermal%map%tail == 0 &
+            .and. any(melts(model%materials(model%sections%material))) .and. .not. &
+            allocated(self%thermal%division%piece)
+         if (self%thermal%changes) self%thermal%basis = hierarchical_basis(model%mesh, &
+            self%thermal%map)
          self%jump_index = self%thermal%map%tail_index(self%thermal%map%introduced)
       end associate
    end subroutine number
+
+   !> Unknown temperatures by those at corners and by what those between have beside their mean.
+   pure function hierarchical_basis(mesh, map) result(basis)
+      type(mesh_type), intent(in) :: mesh
+      type(linear_constraints_type), intent(in) :: map       ! without a tail
+      type(sparse_matrix_type) :: basis                      ! (equations, equations)
+      type(triplet_list_type) :: list
+      integer :: corner, e, i, side, unknown(size(mesh%node_number)), unknowns(3)
+
+      call list%reserve(3*map%equations)
+      do i = 1, map%equations
+         call list%add(i, i, 1.0_dp)
+      end do
+      unknown = 0
+      unknown(map%leading_nodes()) = [(i, i=1, map%equations)]
+      do e = 1, size(mesh%element_kind)
+         if (element_node_count(mesh%element_kind(e)) <= 4) cycle
+         do side = 1, element_corner_count(mesh%element_kind(e))
+            unknowns = unknown(mesh%element_nodes(side_nodes(mesh%element_kind(e), side), e))
+            if (unknowns(2) == 0) cycle
+            do corner = 1, 3, 2
+               if (unknowns(corner) > 0) call list%add(unknowns(2), unknowns(corner), of_corner)
+            end do
+            unknown(mesh%element_nodes(element_corner_count(mesh%element_kind(e)) + side, e)) = 0
+         end do
+      end do
+      basis = list%compress(map%equations, map%equations)
+   end function hierarchical_basis
 
    !> Finds the motions that the supports leave free, where contact points change any.
    subroutine find_motions(self, model, prescribed)

@@ -6,7 +6,7 @@ module gradient_solver
    use errors, only: error_type
    use kinds, only: dp, long
    use linear_solver, only: check_pattern, linear_solver_type
-   use sparse_matrix, only: sparse_matrix_type
+   use sparse_matrix, only: congruent, sparse_matrix_type, symmetric
    implicit none
    private
    public :: gradient_solver_type
@@ -17,17 +17,21 @@ module gradient_solver
    real(dp), parameter :: trial_tolerance = 0.36_dp
    integer, parameter :: most_steps = 1000
    !> What is left over of a right-hand side, and where the size of a solution is asked for
-   real(dp), parameter :: tolerance = 1.0e-10_dp, rough = 1.0e-3_dp
+   real(dp), parameter :: tolerance = 1.0e-11_dp, rough = 1.0e-3_dp
 
    !> A matrix without a tail that is scaled to I + L + L^T, or the factors of another solver.
    type, extends(linear_solver_type) :: gradient_solver_type
       class(linear_solver_type), allocatable :: direct   !! that other solver, given at first
+      !> (order, order) unknowns of those that it solves for, lower triangle, likewise
+      type(sparse_matrix_type) :: basis
       integer, allocatable, private :: rank(:)           !! (order) for it, if known
       logical, private :: is_analysed = .false.          !! whether it is
       logical, private :: iterates = .false.
-      real(dp), allocatable, private :: value(:)         !! (entries) L, beside a diagonal not read
+      !> Entries beside the diagonal, and their matrix between the unknowns that it solves for
+      real(dp), allocatable, private :: beside(:)
+      type(sparse_matrix_type), private :: transformed
+      type(sparse_matrix_type), private :: scaled        !! L by rows, beside a diagonal not read
       real(dp), allocatable, private :: scaling(:)       !! (order) 1/sqrt(diagonal)
-      real(dp), private :: total = 0.0_dp                !! sum of the entries
    contains
       procedure :: analyse
       procedure :: factor
@@ -35,7 +39,6 @@ module gradient_solver
       procedure :: recover
       procedure :: extend
       procedure :: release
-      procedure :: roughly
    end type gradient_solver_type
 
 contains
@@ -73,7 +76,7 @@ contains
       end if
       self%schur = reshape([real(dp) ::], [0, 0])
       if (self%iterates) then
-         self%factor_bytes = storage_size(1.0_dp)/8*size(self%value, kind=long)
+         self%factor_bytes = storage_size(1.0_dp)/8*size(self%scaled%value, kind=long)
          self%smallest_pivot = 1.0_dp
          return
       end if
@@ -90,27 +93,58 @@ contains
       self%lost_unknown = self%direct%lost_unknown
    end subroutine factor
 
+   !> Takes a matrix to the unknowns that are solved for. What changes is mostly its diagonal.
+   pure subroutine transform(self, lower)
+      type(gradient_solver_type), intent(inout) :: self
+      type(sparse_matrix_type), intent(in) :: lower
+      type(sparse_matrix_type) :: rest
+      integer :: i, j, k, place
+
+      rest = lower
+      rest%value(rest%row_start(2:) - 1) = 0.0_dp
+      if (.not. allocated(self%beside)) self%beside = 0.0_dp*rest%value - 1.0_dp
+      if (any(abs(self%beside - rest%value) > 0.0_dp)) then
+         self%beside = rest%value
+         self%transformed = congruent(symmetric(rest), self%basis)
+      end if
+      self%scaled = self%transformed
+      associate (to => self%scaled, by => self%basis)
+         do i = 1, self%order
+            do j = by%row_start(i), by%row_start(i + 1) - 1
+               do k = by%row_start(i), j
+                  associate (first => to%row_start(by%column(j)), last => to%row_start( &
+                     by%column(j) + 1) - 1)
+                     place = first - 1 + findloc(to%column(first:last), by%column(k), dim=1)
+                  end associate
+                  to%value(place) = to%value(place) + lower%value(lower%row_start(i + 1) - 1)* &
+                     by%value(j)*by%value(k)
+               end do
+            end do
+         end do
+      end associate
+   end subroutine transform
+
    !> Brings the diagonal to 1, if all of it is positive.
    pure subroutine scale_matrix(self, lower)
       type(gradient_solver_type), intent(inout) :: self
       type(sparse_matrix_type), intent(in) :: lower
       integer :: i, k
 
-      self%value = lower%value
-      self%scaling = lower%value(lower%row_start(2:) - 1)
-      self%total = 2*sum(lower%value) - sum(self%scaling)
-      self%iterates = all(self%scaling > 0.0_dp)
-      if (.not. self%iterates) return
-      self%scaling = 1.0_dp/sqrt(self%scaling)
-      do i = 1, self%order
-         do k = lower%row_start(i), lower%row_start(i + 1) - 2
-            self%value(k) = self%scaling(i)*self%value(k)*self%scaling(lower%column(k))
+      call transform(self, lower)
+      associate (matrix => self%scaled)
+         self%scaling = matrix%value(matrix%row_start(2:) - 1)
+         self%iterates = all(self%scaling > 0.0_dp)
+         if (.not. self%iterates) return
+         self%scaling = 1.0_dp/sqrt(self%scaling)
+         do i = 1, self%order
+            do k = matrix%row_start(i), matrix%row_start(i + 1) - 2
+               matrix%value(k) = self%scaling(i)*matrix%value(k)*self%scaling(matrix%column(k))
+            end do
          end do
-      end do
+      end associate
    end subroutine scale_matrix
 
-   !> Solves for a right-hand side. What is left over is evened out: the sum of it is none, which the
-   !> balance of heat would show.
+   !> Solves for a right-hand side.
    pure subroutine iterate(self, most, part, x, is_solved)
       type(gradient_solver_type), intent(in) :: self
       integer, intent(in) :: most                    ! steps
@@ -119,10 +153,11 @@ contains
       logical, intent(out) :: is_solved
       real(dp), dimension(self%order) :: direction, left_over, product, t
       real(dp) :: before, length, square, least
-      integer :: i, k, step
+      integer :: step
 
-      left_over = self%scaling*x
-      call sweep_down(self%order, self%row_start, self%column, self%value, left_over)
+      left_over = self%scaling*self%basis%multiply_transposed(x)
+      call sweep_down(self%order, self%scaled%row_start, &
+            self%scaled%column, self%scaled%value, left_over)
       direction = left_over
       square = dot_product(left_over, left_over)
       least = part**2*square
@@ -131,9 +166,11 @@ contains
          is_solved = square <= least
          if (is_solved) exit
          t = direction
-         call sweep_up(self%order, self%row_start, self%column, self%value, t)
+         call sweep_up(self%order, self%scaled%row_start, &
+            self%scaled%column, self%scaled%value, t)
          product = direction - t
-         call sweep_down(self%order, self%row_start, self%column, self%value, product)
+         call sweep_down(self%order, self%scaled%row_start, &
+            self%scaled%column, self%scaled%value, product)
          product = product + t
          length = square/dot_product(direction, product)
          x = x + length*t
@@ -142,13 +179,7 @@ contains
          square = dot_product(left_over, left_over)
          direction = left_over + square/before*direction
       end do
-      product = left_over
-      do i = 1, self%order
-         do k = self%row_start(i), self%row_start(i + 1) - 2
-            product(i) = product(i) + self%value(k)*left_over(self%column(k))
-         end do
-      end do
-      x = self%scaling*x + sum(product/self%scaling)/self%total
+      x = self%basis%multiply(self%scaling*x)
    end subroutine iterate
 
    !> (I + L)^-1 x.
@@ -186,7 +217,7 @@ contains
       end do
    end subroutine sweep_up
 
-   !> As condense_interface of linear_solver says.
+   !> As condense_interface of linear_solver says, but that solutions are rough.
    subroutine condense(self, rhs, condensed, welded)
       class(gradient_solver_type), intent(in) :: self
       real(dp), intent(in) :: rhs(:, :)
@@ -196,7 +227,7 @@ contains
       if (.not. self%iterates) then
          call self%direct%condense(rhs, condensed, welded)
       else if (present(welded)) then
-         call self%recover(rhs, condensed, welded)
+         call solve(self, rough, rhs, welded)
       end if
    end subroutine condense
 
@@ -206,18 +237,28 @@ contains
       real(dp), intent(in) :: rhs(:, :)
       real(dp), intent(in) :: on_tail(:, :)
       real(dp), intent(out) :: solution(:, :)
+
+      if (self%iterates) then
+         call solve(self, tolerance, rhs, solution)
+      else
+         call self%direct%recover(rhs, on_tail, solution)
+      end if
+   end subroutine recover
+
+   !> Solves for right-hand sides.
+   pure subroutine solve(self, part, rhs, solution)
+      type(gradient_solver_type), intent(in) :: self
+      real(dp), intent(in) :: part                   ! of these that may be left over
+      real(dp), intent(in) :: rhs(:, :)
+      real(dp), intent(out) :: solution(:, :)
       logical :: is_solved
       integer :: k
 
-      if (.not. self%iterates) then
-         call self%direct%recover(rhs, on_tail, solution)
-         return
-      end if
       solution = rhs
       do k = 1, size(rhs, 2)
-         call iterate(self, most_steps, tolerance, solution(:, k), is_solved)
+         call iterate(self, most_steps, part, solution(:, k), is_solved)
       end do
-   end subroutine recover
+   end subroutine solve
 
    !> As extend_interface of linear_solver says.
    subroutine extend(self, on_tail, solution)
@@ -228,23 +269,6 @@ contains
       solution = 0.0_dp
       if (.not. self%iterates) call self%direct%extend(on_tail, solution)
    end subroutine extend
-
-   !> A solution of which the size alone counts.
-   function roughly(self, rhs) result(solution)
-      class(gradient_solver_type), intent(in) :: self
-      real(dp), intent(in) :: rhs(:)
-      real(dp) :: solution(self%order)
-      real(dp) :: on_tail(0, 1), x(self%order, 1)
-      logical :: is_solved
-
-      solution = rhs
-      if (self%iterates) then
-         call iterate(self, most_steps, rough, solution, is_solved)
-      else
-         call self%direct%condense(reshape(rhs, shape(x)), on_tail, x)
-         solution = x(:, 1)
-      end if
-   end function roughly
 
    !> As release_interface of linear_solver says.
    subroutine release(self)
