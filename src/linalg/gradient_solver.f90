@@ -2,6 +2,9 @@
 !> once: conjugate gradients, preconditioned by a sweep of Gauss and Seidel to and fro, at the cost
 !> of one product for both (S. C. Eisenstat, SIAM J. Sci. Stat. Comput. 2 (1981) 1). It takes few
 !> steps where heat is stored. A matrix that would need many goes to a direct solver.
+!>
+!> It solves for other unknowns if given a basis, such as values between corners beside parts of those
+!> at these, which with midside nodes saves half of the steps (hierarchical basis).
 module gradient_solver
    use errors, only: error_type
    use kinds, only: dp, long
@@ -12,7 +15,7 @@ module gradient_solver
    public :: gradient_solver_type
 
    ! How fast they converge is tried with a uniform load, whose solution is smooth. So many steps
-   ! would be some 60 to the end.
+   ! would be some 200 to the end.
    integer, parameter :: trial_steps = 8
    real(dp), parameter :: trial_tolerance = 0.36_dp
    integer, parameter :: most_steps = 1000
@@ -22,12 +25,11 @@ module gradient_solver
    !> A matrix without a tail that is scaled to I + L + L^T, or the factors of another solver.
    type, extends(linear_solver_type) :: gradient_solver_type
       class(linear_solver_type), allocatable :: direct   !! that other solver, given at first
-      !> (order, order) unknowns of those that it solves for, lower triangle, likewise
-      type(sparse_matrix_type) :: basis
+      type(sparse_matrix_type) :: basis   !! unknowns by those that are solved for, given at first
       integer, allocatable, private :: rank(:)           !! (order) for it, if known
       logical, private :: is_analysed = .false.          !! whether it is
       logical, private :: iterates = .false.
-      !> Entries beside the diagonal, and their matrix between the unknowns that it solves for
+      !> Entries beside the diagonal, and their matrix between the unknowns that are solved for
       real(dp), allocatable, private :: beside(:)
       type(sparse_matrix_type), private :: transformed
       type(sparse_matrix_type), private :: scaled        !! L by rows, beside a diagonal not read

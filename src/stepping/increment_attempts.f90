@@ -395,11 +395,13 @@ contains
          terms => run%bodies%thermal%map%by_unknowns%start)
          temperature = start
          change = 0.0_dp
-         if (allocated(attempt%before%temperature_before)) change = stage%size/ &
-            attempt%before%increment_size*(start - attempt%before%temperature_before)
-         call melting%begin(model, change, temperature)
          ! The equation of heat alone does not have that of contact points.
-         if (size(bodies%points%weight) == 0) then
+         if (size(bodies%points%weight) > 0) then
+            call melting%begin(model, change, attempt%before%stored*stage%size, temperature)
+         else
+            if (allocated(attempt%before%temperature_before)) change = stage%size/ &
+               attempt%before%increment_size*(start - attempt%before%temperature_before)
+            call melting%begin(model, change, 0.0_dp*start, temperature)
             call run%corrections%give(equation, attempt%next)
             rhs = equation%history(bodies%thermal%matrix) + melting%contents(model, start)/ &
                equation%duration

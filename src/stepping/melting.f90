@@ -88,12 +88,13 @@ contains
       self%acts = size(self%nodes) > 0
    end subroutine prepare
 
-   !> Starts a stage at temperatures that go on changing as they did. A node at a solidus or liquidus
-   !> is within the interval, unless the heat of this leads out of it.
-   pure subroutine begin(self, model, change, temperature)
+   !> Starts a stage at the heat that nodes come to. A node at a solidus or liquidus is within the
+   !> interval, unless its heat leads out of it.
+   pure subroutine begin(self, model, change, heat, temperature)
       class(melting_type), intent(inout) :: self
       type(model_type), intent(in) :: model
-      real(dp), intent(in) :: change(:)                      !! (nodes) that goes on [temperature]
+      real(dp), intent(in) :: change(:)                      !! (nodes) without melting [temperature]
+      real(dp), intent(in) :: heat(:)                        !! (nodes) gained besides [energy]
       real(dp), intent(inout) :: temperature(:)              !! (nodes) at its start, then foreseen
       real(dp) :: start(size(temperature))
       integer :: i
@@ -103,7 +104,8 @@ contains
       do i = 1, size(self%nodes)
          associate (node => self%nodes(i))
             associate (material => model%materials(node%material), there => temperature(node%node))
-               call melted_to(material, heat_capacity(material), there, latent_content(material, &
+               call melted_to(material, heat_capacity(material), there + heat(node%node)/( &
+                  heat_capacity(material)*node%volume), latent_content(material, &
                   start(node%node)), node%at, node%row)
                there = node%at
             end associate
