@@ -438,7 +438,7 @@ contains
       type(field_problem_type), intent(in) :: problem     !! that it is of
       type(field_load_type), intent(inout) :: load        !! receives what is condensed
       type(solved_loads_type), intent(inout) :: known     !! earlier loads of the field
-      !> (dofs) values where the tail is zero; where the matrix changes, first those that are like them
+      !> (dofs) values where the tail is zero; where the matrix changes, at first a guess
       real(dp), intent(inout), optional :: welded(:)
       !> (dofs) as from condense_inside: values inside of pieces are these, and need no solution
       real(dp), intent(in), optional :: inside(:)

@@ -3,8 +3,8 @@
 !> of one product for both (S. C. Eisenstat, SIAM J. Sci. Stat. Comput. 2 (1981) 1). It takes few
 !> steps where heat is stored. A matrix that would need many goes to a direct solver.
 !>
-!> It solves for other unknowns if given a basis, such as values between corners beside parts of those
-!> at these, which with midside nodes saves half of the steps (hierarchical basis).
+!> It solves for unknowns of a given basis: values between corners beside parts of those at corners
+!> (hierarchical basis) save half of the steps.
 module gradient_solver
    use errors, only: error_type
    use kinds, only: dp, long

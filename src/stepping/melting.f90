@@ -93,7 +93,7 @@ contains
    pure subroutine begin(self, model, change, heat, temperature)
       class(melting_type), intent(inout) :: self
       type(model_type), intent(in) :: model
-      real(dp), intent(in) :: change(:)                      !! (nodes) without melting [temperature]
+      real(dp), intent(in) :: change(:)                    !! (nodes) without melting [temperature]
       real(dp), intent(in) :: heat(:)                        !! (nodes) gained besides [energy]
       real(dp), intent(inout) :: temperature(:)              !! (nodes) at its start, then foreseen
       real(dp) :: start(size(temperature))
