@@ -208,8 +208,10 @@ contains
             do c = 1, size(owner)
                if (owner(c) /= kept(k)) cycle
                do i = 1, size(of_slave)
-                  call add_row(of_slave(i), c, slave%nodes, signs(1)*factor(i, k), nodes, share)
-                  call add_row(of_master(i), c, master%nodes, signs(2)*factor(i, k), nodes, share)
+                  if (signs(1) /= 0) call add_row(of_slave(i), c, slave%nodes, &
+                     signs(1)*factor(i, k), nodes, share)
+                  if (signs(2) /= 0) call add_row(of_master(i), c, master%nodes, &
+                     signs(2)*factor(i, k), nodes, share)
                end do
             end do
             share = share/points%weight(k)

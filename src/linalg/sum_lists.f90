@@ -287,6 +287,7 @@ contains
       do i = 1, size(more)
          if (entry(i) > 0) coefficient(entry(i)) = coefficient(entry(i)) + factor(i)
       end do
+      if (all(entry > 0)) return
       value = [value, pack(more, entry == 0)]
       coefficient = [coefficient, pack(factor, entry == 0)]
    end subroutine add_terms
