@@ -10,7 +10,8 @@ module increment_checks
    use element_kinds, only: element_node_count
    use errors, only: check_finite, error_type, set_error, status_no_convergence
    use kinds, only: dp
-   use materials, only: follows_temperature, heat_capacity, property_keywords
+   use materials, only: follows_temperature, heat_capacity, of_elasticity, of_expansion, &
+      property_keywords
    use mesh_bodies, only: body_name
    use model, only: follows_temperatures, model_type
    use records, only: increment_record_type
@@ -249,6 +250,10 @@ contains
          beyond = 0.0_dp
          associate (material => model%materials(m), there => record%fields%temperature(node))
             do i = 1, size(material%given)
+               ! Of what has no stress these two do nothing.
+               if (any(material%given(i)%kind == [of_elasticity, of_expansion]) .and. (.not. any( &
+                  solves_mechanics(model%steps%analysis)) .or. there >= &
+                  material%law%anneal_temperature)) cycle
                associate (rows => material%given(i)%temperature)
                   row = rows(merge(size(rows), 1, side > 0.0_dp))
                   if (size(rows) == 1 .or. side*(there - row) <= margin*(maxval(rows) - &

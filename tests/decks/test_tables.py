@@ -132,6 +132,22 @@ def test_tables_that_a_run_leaves_are_one_warning(tmp_path, temperature, told):
         assert f"temperature {temperature:g} at node" in line
 
 
+@pytest.mark.parametrize(("analysis", "anneal"), [
+    ("HEAT TRANSFER", []), ("COUPLED TEMPERATURE-DISPLACEMENT", ["*ANNEAL TEMPERATURE", "800."])])
+def test_tables_of_stress_are_not_left_where_there_is_none(tmp_path, analysis, anneal):
+    cards = [*mesh("BODY", XS, YS, "CPE4"), *material("BODY", zero=ZERO, **ISOTROPIC)]
+    at = cards.index("*SOLID SECTION, ELSET=BODY, MATERIAL=BODY")
+    cards[at:at] = [*(["*PLASTIC", "100."] if anneal else []), *anneal]
+    deck = write(tmp_path / "deck.inp", [*cards, *initial("BODY"), "*STEP", f"*{analysis}, STEADY STATE",
+                                         "1., 1.", "*BOUNDARY", "BODY.BOTTOM, 1, 2", "BODY, 11, 11, 900.",
+                                         "*END STEP"])
+    process = run("run", deck, "--out", tmp_path)
+    assert process.returncode == 0, process.stderr
+    found = [line for line in process.stderr.splitlines() if "leaves the tables" in line]
+    assert len(found) == 1
+    assert found[0].endswith("; *CONDUCTIVITY (600)")
+
+
 @pytest.mark.parametrize("kind", ["CPE8", "CPS8", "CPE8R", "CPE4", "CPS3", "CAX8", "CPS4I"])
 def test_orthotropic_constants_of_a_table_turn_with_their_axes(tmp_path, kind):
     section = "" if kind.startswith("CAX") else ", ORIENTATION=TURNED"
