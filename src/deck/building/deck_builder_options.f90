@@ -106,8 +106,12 @@ contains
             'commas: length, stress, power, temperature, time')
          return
       end if
-      deck%model%units = unit_labels_type(trim(words(1)), trim(words(2)), trim(words(3)), &
-         trim(words(4)), trim(words(5)))
+      ! Not by a constructor, in which gfortran leaks what trim makes.
+      deck%model%units%length = trim(words(1))
+      deck%model%units%stress = trim(words(2))
+      deck%model%units%power = trim(words(3))
+      deck%model%units%temperature = trim(words(4))
+      deck%model%units%time = trim(words(5))
    end subroutine build_option_card
 
    !> Reads LEVELS= of *REFINE; 0 after an error.
