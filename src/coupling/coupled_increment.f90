@@ -39,8 +39,9 @@ module coupled_increment
    real(dp), parameter :: same = 1.0e3_dp       !! times the rounding of coordinates: equal gaps
    real(dp), parameter :: no_gain = 1.0e-6_dp      !! a largest real gain that is none beside 1
    !> Residual of the gains of many interfaces, beside 1: where many parts are alike so are their
-   !> gains, and to tell these apart takes hundreds of products. Where laws vary with temperatures
-   !> the matrix is less normal, and errors of the gains may be larger than residuals.
+   !> gains, and to tell these apart takes hundreds of products. Where laws vary with temperatures,
+   !> or friction makes heat, the matrix is less normal, and errors of the gains may be larger than
+   !> residuals.
    real(dp), parameter :: known_of_many = 3.0e-4_dp
    real(dp), parameter :: least_part = 1.0e-12_dp  !! of the largest factor, that counts in scales
 
@@ -382,8 +383,8 @@ contains
          allocate (change(size(rate), 1))
          if (size(heated) > 0) call find_heat_scale()
          call gains%begin(size(free) + size(heated), no_gain, &
-            enough=merge(known_of_many, 0.0_dp, heat%schur%is_sparse() .and. &
-            .not. bodies%points%vary_with_temperature()))
+            enough=merge(known_of_many, 0.0_dp, heat%schur%is_sparse() .and. size(heated) == 0 &
+            .and. .not. bodies%points%vary_with_temperature()))
          do while (gains%wants_product)
             heats = 0.0_dp
             heats(free) = rate(free)*scale(free)*gains%vector(:size(free))

@@ -26,7 +26,7 @@ DIMENSIONS = {  # powers of length, stress and power
     "shear_force": (2, 1, 0), "heat_rate": (0, 0, 1), "heat_flux": (-2, 0, 1),
     "conductance": (-2, 0, 1), "edge_contact": (1, 0, 0), "edge_stick": (1, 0, 0),
     "edges_contact": (1, 0, 0), "edges_stick": (1, 0, 0), "heat_in": (0, 0, 1),
-    "heat_out": (0, 0, 1),
+    "heat_out": (0, 0, 1), "ALLFD": (3, 1, 0),
 }
 RUNNING = ("shear", "slip", "shear_force")  # signs along the tangent to growing s
 ROUNDING = ("heat_imbalance", "heat_imbalance_pointwise", "force_imbalance")

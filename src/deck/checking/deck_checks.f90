@@ -17,7 +17,7 @@ module deck_checks
    use refinement, only: numbering_fault
    use step_checks, only: check_sliding
    use steps, only: solves_heat, solves_mechanics
-   use text, only: append, listed, string_type, to_text, to_upper
+   use text, only: listed, string_type, to_text, to_upper
    implicit none
    private
    public :: check_model, check_usage
@@ -202,8 +202,9 @@ contains
          deck%source%file(deck%cards%keywords(places)%place%image) == 1)
       n = size(places)
       if (n == 0) return
+      allocate (names(n))
       do i = 1, n
-         call append(names, to_upper(deck%cards%keywords(places(i))%text('NAME')))
+         names(i)%value = to_upper(deck%cards%keywords(places(i))%text('NAME'))
       end do
       call deck%warning(deck%cards%keywords(places(1))%place, 'nothing uses the '//noun// &
          trim(merge(' ', 's', n == 1))//' '//listed(names, most_names))
