@@ -19,7 +19,7 @@ def name_regions(picture, axes):
     places where there is most room.
 
     A region too narrow for its name has it outside, with a line, so that no curve is covered; or none
-    where it would cover marks there, which the legend names.
+    where it would cover marks there, which the legend names, but for the dots of open points.
     """
     axes.figure.draw_without_rendering()  # so that the size of the axes is known
     u, v = (np.linspace(0.0, 1.0, n) for n in LABEL_GRID)
@@ -37,7 +37,7 @@ def name_regions(picture, axes):
         covered = marks_under(picture, axes, words, u, v)
         if room[at] < LABEL_ROOM:
             place = free_place(points, room, points[at], points[taken], covered)
-            if covered[place]:
+            if covered[place] and states[place] != OPEN:
                 continue
         else:
             fits = np.flatnonzero((states == state) & (room >= LABEL_ROOM))
