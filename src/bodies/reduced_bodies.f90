@@ -360,9 +360,10 @@ contains
          call constrain_temperatures(used, held_temperature, points, &
             slave_is_stiffer(model, points, .false.), self%thermal%map, self%thermal%division)
          self%thermal%numbering = self%thermal%numbering + 1
-         self%thermal%changes = any(model%steps%is_transient) .and. self%thermal%map%tail == 0 &
-            .and. any(melts(model%materials(model%sections%material))) .and. .not. &
-            allocated(self%thermal%division%piece)
+         ! Heat of friction would ask for sharp solutions of other loads.
+         self%thermal%changes = any(model%steps%is_transient) .and. size(points%weight) == 0 .and. &
+            self%thermal%map%tail == 0 .and. .not. allocated(self%thermal%division%piece) .and. &
+            any(melts(model%materials(model%sections%material)))
          if (self%thermal%changes) self%thermal%basis = hierarchical_basis(model%mesh, &
             self%thermal%map)
          self%jump_index = self%thermal%map%tail_index(self%thermal%map%introduced)

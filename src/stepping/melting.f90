@@ -116,7 +116,7 @@ contains
    !> Foresees T' at the end of a stage by sweeps to and fro over the equation of heat without
    !> melting, which solve the row of a node together with its latent heat (Gauss and Seidel). Nodes
    !> whose neighbours stay rest. They end when none has entered or left an interval for some.
-   subroutine foresee(self, model, matrix, rhs, duration, moves, temperature)
+   pure subroutine foresee(self, model, matrix, rhs, duration, moves, temperature)
       class(melting_type), intent(inout) :: self
       type(model_type), intent(in) :: model
       type(sparse_matrix_type), intent(in) :: matrix         !! (nodes, nodes) [power/temperature]
@@ -126,7 +126,7 @@ contains
       real(dp), intent(inout) :: temperature(:)              !! (nodes) from begin, then foreseen
       real(dp) :: held(size(rhs)), left_over, own, small(size(rhs))
       logical :: waits(size(rhs))
-      integer :: at(size(rhs)), i, k, l, moved, within, sweep, visits, solved
+      integer :: at(size(rhs)), i, k, l, moved, within, sweep
 
       at = 0
       small = 0.0_dp
@@ -140,14 +140,12 @@ contains
       end do
       waits = moves
       moved = 0
-      visits=0; solved=0
       do sweep = 1, most_sweeps
          if (sweep - moved > quiet_sweeps) exit
          do k = 1, size(rhs)
             i = merge(k, size(rhs) + 1 - k, modulo(sweep, 2) == 1)
             if (.not. waits(i)) cycle
             waits(i) = .false.
-            visits=visits+1
             left_over = rhs(i) - held(i)
             own = 0.0_dp
             do l = matrix%row_start(i), matrix%row_start(i + 1) - 1
@@ -155,7 +153,6 @@ contains
                if (matrix%column(l) == i) own = matrix%value(l)
             end do
             if (abs(left_over) <= small(i)) cycle
-            solved=solved+1
             associate (row => matrix%column(matrix%row_start(i):matrix%row_start(i + 1) - 1))
                waits(row) = moves(row)
             end associate
@@ -173,7 +170,6 @@ contains
             end associate
          end do
       end do
-      write(0,*) 'FORE', sweep-1, moved, visits/size(rhs), solved/size(rhs)
    end subroutine foresee
 
    !> Moves T' to a solution.

@@ -16,6 +16,7 @@ ORDER = (
 )
 RANK = {folder: rank for rank, folders in enumerate(ORDER) for folder in folders}
 MODULE = re.compile(r"^\s*module\s+(\w+)\s*$", re.MULTILINE)
+PRINTS = re.compile(r"^\s*(?:print\b|write\s*\(\s*(?:\*|\d|output_unit|error_unit))", re.MULTILINE)
 USE = re.compile(r"^\s*use\s*(?:,\s*(?:non_)?intrinsic\s*)?(?:::)?\s*(\w+)", re.MULTILINE)
 
 
@@ -57,6 +58,12 @@ def test_other_folders_use_the_doors_of_a_folder_alone(folder):
     used = {name.lower() for path in SOURCES.rglob("*.f90")
             if folder_of(path).split("/")[0] != folder for name in USE.findall(path.read_text())}
     assert used & inside == doors(folder, inside)
+
+
+def test_two_modules_alone_print():
+    """What a trace of the numerics leaves behind would be among the messages of a run."""
+    found = {path.stem for path in SOURCES.rglob("*.f90") if PRINTS.search(path.read_text())}
+    assert found == {"messages", "progress"}
 
 
 def test_every_folder_stands_in_the_order():
