@@ -158,8 +158,8 @@ contains
       integer :: step
 
       left_over = self%scaling*self%basis%multiply_transposed(x)
-      call sweep_down(self%order, self%scaled%row_start, &
-            self%scaled%column, self%scaled%value, left_over)
+      call sweep_down(self%order, self%scaled%row_start, self%scaled%column, self%scaled%value, &
+         left_over)
       direction = left_over
       square = dot_product(left_over, left_over)
       least = part**2*square
@@ -168,11 +168,10 @@ contains
          is_solved = square <= least
          if (is_solved) exit
          t = direction
-         call sweep_up(self%order, self%scaled%row_start, &
-            self%scaled%column, self%scaled%value, t)
+         call sweep_up(self%order, self%scaled%row_start, self%scaled%column, self%scaled%value, t)
          product = direction - t
-         call sweep_down(self%order, self%scaled%row_start, &
-            self%scaled%column, self%scaled%value, product)
+         call sweep_down(self%order, self%scaled%row_start, self%scaled%column, &
+            self%scaled%value, product)
          product = product + t
          length = square/dot_product(direction, product)
          x = x + length*t

@@ -716,3 +716,27 @@ def test_all_rounds_are_of_the_deck_as_it_was_read_first(tmp_path):
                                  cwd=tmp_path, stdin=deck.stdout, capture_output=True, check=False)
     assert process.returncode == 0, process.stderr
     assert "requested accuracy reached after 2 rounds" in process.stdout
+
+
+@pytest.mark.parametrize("target", ["0.1%", "pressure=0.05%"])
+def test_a_uniform_pressure_comes_nearer_to_its_target(tmp_path, target):
+    """Of a shaft in a hub of the same steel, E overlap/(2 r) (1 - r^2/R^2): elements that err alike are
+    divided alike, for pressures of four-node elements alternate beside hanging nodes."""
+    cards = [*mesh("SHAFT", [*np.linspace(0.0, 20.0, 9)], [*np.linspace(0.0, 30.0, 9)], "CAX4I"),
+             *mesh("HUB", [*np.linspace(20.0, 40.0, 9)], [*np.linspace(0.0, 30.0, 9)], "CAX4I", first=1001)]
+    for name in ("SHAFT", "HUB"):
+        cards += material(name, (2.1e5, 0.3))
+    deck = write(tmp_path / "fit.inp", [
+        *cards, "*SURFACE INTERACTION, NAME=DRY", "*CONTACT PAIR, INTERACTION=DRY, NAME=FIT",
+        "SHAFT.RIGHT, HUB.LEFT", "*CLEARANCE, SLAVE=SHAFT.RIGHT, MASTER=HUB.LEFT, VALUE=-0.03",
+        "*BOUNDARY", "SHAFT.BOTTOM, 2", "HUB.BOTTOM, 2", "*STEP", "*STATIC", "*END STEP",
+        "*VERIFY, KIND=NONE", "pressure, MAX, LAST"])
+    process = run("run", deck, "--out", tmp_path, "--accuracy", target)
+    assert process.returncode == 0, process.stderr
+    with h5py.File(tmp_path / "fit.vtkhdf") as file:
+        found = file["contact/FIT/pressure"][-1]
+    (told, own), = re.findall(r"peak pressure +(\S+) \+- (\S+)", process.stdout)
+    assert np.abs(found - 118.125).max() <= float(own)
+    # What a card asks for is that of the last round.
+    (asked,) = re.findall(r"pressure MAX: (\S+) ", process.stdout)
+    assert asked == told
