@@ -229,7 +229,7 @@ contains
                finding%allowed/max(uncertainty, finding%allowed))
             weight = weight*(squared_errors(model%mesh, record%stress_error) + &
                squared_errors(model%mesh, record%heat_flux_error))
-            ! Elements that err alike are divided alike.
+            ! Hanging nodes between elements of the same error would bring a larger one.
             where (weight >= alike*minval(weight, mask=largest_part(weight, marked))) &
                of_elements = max(of_elements, levels)
          end associate
