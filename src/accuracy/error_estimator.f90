@@ -11,7 +11,7 @@ module error_estimator
    use contact_quantities, only: estimated, estimated_values
    use divided_mesh, only: divided_mesh_type
    use due_output, only: is_followed, is_judged
-   use errors, only: error_type
+   use errors, only: error_type, status_interrupted
    use field_quantities, only: maxima
    use field_recovery, only: squared_errors
    use increment_quantities, only: history_estimated, history_value
@@ -19,15 +19,16 @@ module error_estimator
    use local_refinement, only: elements_about, largest_part
    use mesh, only: mesh_type
    use model, only: model_type, uncertainty_full, verify_type
-   use no_estimates, only: at_corner, first_reason, no_finer_value, no_reason, not_on_finer_mesh, &
-      not_unique, of_axis, of_path, of_step, reason_count, reason_of_run, slides_far
+   use no_estimates, only: at_corner, first_reason, interrupted, no_finer_value, no_reason, &
+      not_on_finer_mesh, not_unique, of_axis, of_path, of_step, reason_count, reason_of_run, &
+      slides_far
    use quantity_histories, only: quantity_histories_type
    use quantity_types, only: find_quantity, of_nodes, quantity_type
    use records, only: increment_record_type, uncertainty_type
    use reported_quantities, only: verifiable
    use simulation, only: simulation_type
    use solution_state, only: solution_state_type
-   use state_tables, only: state_table_type
+   use state_tables, only: state_table_type, words
    use table_uncertainties, only: find_table_uncertainties
    use text, only: append, read_integer, to_text, to_upper
    use uncertainty_rule, only: uncertainty_parts
@@ -55,6 +56,7 @@ module error_estimator
       logical :: is_on = .false.                   !! whether there is anything to estimate
       logical :: is_full = .false.                 !! whether the divided mesh follows the run
       character(:), allocatable :: lost            !! why there is no finer run; else unallocated
+      logical, public :: is_interrupted = .false.  !! whether that is a signal
    contains
       procedure :: start
       procedure :: begin_increment
@@ -132,7 +134,10 @@ contains
          call self%divided%solve_end(simulation, model, near .or. err_most(model%mesh, record), &
             near, self%before, error)
       end if
-      if (allocated(error)) self%lost = error%message
+      if (allocated(error)) then
+         self%lost = error%message
+         self%is_interrupted = error%status == status_interrupted
+      end if
       if (allocated(self%lost) .and. (allocated(error) .or. record%increment == 1)) call append( &
          record%notes, 'numerical uncertainties cannot be estimated: '//self%lost)
       call simulation%bodies%views(self%interfaces)
@@ -364,8 +369,8 @@ contains
       real(dp) :: parts(3)
 
       all_holds = holds
-      all_holds(not_on_finer_mesh) = allocated(self%lost)
-      all_holds(no_finer_value) = ieee_is_nan(change)
+      all_holds(merge(interrupted, not_on_finer_mesh, self%is_interrupted)) = allocated(self%lost)
+      all_holds(no_finer_value) = ieee_is_nan(change) .and. .not. allocated(self%lost)
       own = no_uncertainty(value, first_reason(all_holds))
       if (ieee_is_nan(value)) return
       parts = uncertainty_parts(quantity, change, beside(1), beside(2), self%iteration*value)
@@ -400,7 +405,9 @@ contains
 
       if (.not. self%is_on) return
       call self%histories%exchange([size(estimated), interfaces], table)
-      if (self%is_full .and. .not. allocated(self%lost)) call self%divided%exchange(table, error)
+      if (.not. self%is_full) return
+      call words(table, 'no_finer_run', self%lost)
+      if (.not. allocated(self%lost)) call self%divided%exchange(table, error)
    end subroutine exchange
 
    !> Frees the factors of the finer mesh.

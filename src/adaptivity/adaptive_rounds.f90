@@ -128,7 +128,8 @@ contains
                if (record%last_of_step) call self%accuracy%settle(record)
             end if
             call analyse_stability(model, simulation, record)
-            call keep_restart(model, simulation, record)
+            ! A run that goes on shall solve such an increment with its finer mesh.
+            if (.not. estimator%is_interrupted) call keep_restart(model, simulation, record)
             if (allocated(record%restart)) call estimator%exchange(size(model%contacts), &
                record%restart, error)
          end if

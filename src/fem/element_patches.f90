@@ -51,6 +51,8 @@ module element_patches
    !> Root mean square over the sites of what is new in a term, below which the sites do not tell
    !> it from the terms before: a single row of elements has no slope, or no curvature, across.
    real(dp), parameter :: undetermined = 0.1_dp
+   !> Least variance of corners in a direction, over that of the sites: corners may lie on a line.
+   real(dp), parameter :: on_a_line = 1.0e-4_dp
 
    !> Orthogonal polynomials over sites.
    type :: fit_type
@@ -287,7 +289,7 @@ contains
 
       fit%terms = terms
       fit%origin = sum(corners, dim=2)/size(corners, 2)
-      fit%scaling = scaling_of(corners, fit%origin)
+      fit%scaling = scaling_of(corners, sites, fit%origin)
       do i = 1, size(sites, 2)
          places(:, i) = matmul(fit%scaling, sites(:, i) - fit%origin)
       end do
@@ -347,10 +349,11 @@ contains
    end function term
 
    !> The principal axes of a cloud of corners, each divided by its standard deviation, so that
-   !> patches of slender elements in any direction are fitted like those of square ones.
-   pure function scaling_of(corners, centre) result(scaling)
-      real(dp), intent(in) :: corners(:, :), centre(2)
-      real(dp) :: scaling(2, 2), xx, yy, xy, angle, axis(2), unit
+   !> patches of slender elements in any direction are fitted like those of square ones. Corners
+   !> may lie on a line, as those of half a ring that is one element; sites beside it do not.
+   pure function scaling_of(corners, sites, centre) result(scaling)
+      real(dp), intent(in) :: corners(:, :), sites(:, :), centre(2)
+      real(dp) :: scaling(2, 2), xx, yy, xy, angle, axis(2), unit, of_sites, variance
       integer :: i
 
       unit = maxval(abs(corners - spread(centre, 2, size(corners, 2))))
@@ -361,8 +364,10 @@ contains
       if (abs(xy) > 0.0_dp) angle = atan2(2*xy, xx - yy)/2
       do i = 1, 2
          axis = merge([cos(angle), sin(angle)], [-sin(angle), cos(angle)], i == 1)
-         scaling(i, :) = axis/(unit*sqrt((axis(1)**2*xx + axis(2)**2*yy + 2*axis(1)*axis(2)*xy)/ &
-            size(corners, 2)))
+         variance = (axis(1)**2*xx + axis(2)**2*yy + 2*axis(1)*axis(2)*xy)/size(corners, 2)
+         of_sites = sum((matmul(axis, sites - spread(centre, 2, size(sites, 2)))/unit)**2)/ &
+            size(sites, 2)
+         scaling(i, :) = axis/(unit*sqrt(max(variance, on_a_line*of_sites)))
       end do
    end function scaling_of
 

@@ -23,15 +23,16 @@ module no_estimates
    integer, parameter, public :: of_sliding = 11   !! of contact points that follow sliding: of_path
    integer, parameter, public :: of_points = 12    !! single nodes or points, not on both meshes
    integer, parameter, public :: of_axis = 13      !! of a peak pressure there on linear elements
-   integer, parameter, public :: reason_count = 13
+   integer, parameter, public :: interrupted = 14  !! by a signal, before the finer mesh was solved
+   integer, parameter, public :: reason_count = 14
    ! Of what checks alone compare, and only with ERRORS=FULL; in no file.
-   integer, parameter :: of_full_checks = 14, of_checks = 15
+   integer, parameter :: of_full_checks = 15, of_checks = 16
 
    character(*), parameter :: words(of_checks) = [character(32) :: 'branches', 'ERRORS=NO', &
       'slides beyond its contact points', 'not unique', 'at a corner', &
       'peak grows with the mesh', 'path; ERRORS=FULL', 'needs ERRORS=FULL', &
       'no solution on a finer mesh', 'not there on a finer mesh', 'SLIDING=FINITE; ERRORS=FULL', &
-      'single points', 'axis', '*VERIFY; ERRORS=FULL', 'only for *VERIFY']
+      'single points', 'axis', 'interrupted', '*VERIFY; ERRORS=FULL', 'only for *VERIFY']
 
 contains
 

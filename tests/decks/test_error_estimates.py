@@ -185,3 +185,27 @@ def test_a_body_that_expands_freely_has_no_error_of_stress_nor_of_heat_flux(tmp_
         assert np.abs(file["VTKHDF/PointData/displacement"][:]).max() > 1e-4
         for name in ("stress_error", "heat_flux_error"):
             assert not file[f"history/{name}"][:].any(), name
+
+
+def half_ring(folder, kind, span, turned):
+    """Return the relative error of stress in half a ring that is one element, with its ends held and
+    turned about a point far from it."""
+    points = [(1.0, 0), (2.0, 0), (2.0, span), (1.0, span), (1.5, 0), (2.0, span / 2), (1.5, span),
+              (1.0, span / 2)]
+    nodes = (f"{n}, {9 + r * np.cos(turned + t):.15g}, {r * np.sin(turned + t):.15g}"
+             for n, (r, t) in enumerate(points, 1))
+    deck = folder / "ring.inp"
+    deck.write_text("\n".join(["*NODE, NSET=ALL", *nodes, f"*ELEMENT, TYPE={kind}, ELSET=RING",
+                               "1, 1, 2, 3, 4, 5, 6, 7, 8", *material("RING"), "*STEP", "*STATIC",
+                               "*BOUNDARY", *(f"{n}, 1, 2" for n in (1, 2, 3, 4, 5, 7)), "*DLOAD",
+                               "RING, P4, 100.", "*END STEP\n"]))
+    with h5py.File(solve(deck)) as file:
+        return file["history/stress_error"][0, 0]
+
+
+@pytest.mark.parametrize("kind", ["CPE8", "CPE8R", "CAX8"])
+def test_half_a_ring_of_one_element_is_like_a_little_less_of_it(tmp_path, kind):
+    """Its four corners lie on a line, wherever it is turned."""
+    for turned in (0.0, np.pi / 2) if kind == "CAX8" else (0.0, 0.5, np.pi / 2):
+        less = half_ring(tmp_path, kind, 0.9999 * np.pi, turned)
+        assert half_ring(tmp_path, kind, np.pi, turned) == pytest.approx(less, rel=1e-4)

@@ -301,3 +301,23 @@ def test_a_signal_ends_an_increment_without_an_end_and_keeps_those_before(tmp_pa
     assert reason in listing
     assert "\nSECONDS\n" in listing   # it came to its end
     assert not list(tmp_path.glob("*.tmp"))
+
+
+def test_numbers_whose_finer_mesh_a_signal_ends_say_so(tmp_path):
+    """Whole increments end; by plain iteration none of half their length does. No state is kept from
+    which a run would go on without its finer mesh."""
+    deck = copy_deck(COUPLED, tmp_path / "long.inp", ["*OPTIONS, ERRORS=FULL", "*RESTART, WRITE"], {
+        "METHOD=NEWTON": "METHOD=PICARD, MAXITER=100000", "20., 900.": "1040., 2080.",
+        "TOP, 11, 11, 900.": "TOP, 11, 11, 2080."})
+    deck.write_text(deck.read_text().split("*VERIFY")[0])
+    process = subprocess.Popen([PROGRAM, "run", str(deck), "--out", str(tmp_path)], text=True,
+                               stdout=subprocess.PIPE, stderr=subprocess.PIPE)
+    while cpu_seconds(process) < 1.0:   # the increment itself takes some hundredths
+        assert process.poll() is None
+        time.sleep(0.05)
+    assert end_by_signal(process) < AT_MOST
+    output, _ = process.communicate()
+    assert len(re.findall(r"(?:force|rate|pressure|stress) .*\(no estimate: interrupted\)", output)) > 4
+    assert "finer mesh" not in output
+    with h5py.File(tmp_path / "long.vtkhdf") as file:
+        assert len(file["history/time"]) == 1 and "restart" not in file

@@ -275,6 +275,21 @@ def test_a_deck_adds_steps_behind_those_of_a_result(cycling, tmp_path):
     assert_same(own, go_on(new, own, tmp_path / "own", float(kept(own)[-2])))
 
 
+def test_a_run_without_a_finer_one_goes_on_without_it(tmp_path):
+    """Plain iteration solves the whole increment, but not its halves on the finer mesh."""
+    deck = copy_deck(COUPLED, tmp_path / "deck.inp", ["*OPTIONS, ERRORS=FULL", WRITE], {
+        "METHOD=NEWTON": "METHOD=PICARD, MAXITER=50", "20., 900.": "1040., 1040.",
+        "TOP, 11, 11, 900.": "TOP, 11, 11, 1040."})
+    deck.write_text(deck.read_text().split("*VERIFY")[0])
+    result = solve(deck)
+    more = tmp_path / "more.inp"
+    more.write_text("*RESTART, READ, STEP=1\n*STEP\n*COUPLED TEMPERATURE-DISPLACEMENT, STEADY STATE, "
+                    "DIRECT\n1., 1.\n*BOUNDARY\nTOP, 11, 11, 1050.\n*END STEP\n")
+    process = run("run", more, "--restart", result, "--out", tmp_path)
+    assert process.returncode == 0, process.stderr
+    assert "(no estimate: no solution on a finer mesh)" in process.stdout
+
+
 def test_the_increment_named_is_that_of_the_step_named(tmp_path):
     """Both steps have four increments: the second of step 2 is the sixth, at time 1.5."""
     heated = ["*STEP", "*HEAT TRANSFER, STEADY STATE", "0.25, 1.", "*BOUNDARY"]
