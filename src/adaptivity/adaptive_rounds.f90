@@ -109,6 +109,7 @@ contains
       type(error_estimator_type), allocatable :: estimator
       type(contact_points_type), allocatable :: interfaces(:)
       type(round_indicators_type) :: indicators
+      real(dp) :: estimated_since, since
 
       allocate (estimator)
       call estimator%start(model)
@@ -117,9 +118,12 @@ contains
       call indicators%start(model)
       do while (.not. (allocated(error) .or. simulation%finished(model)))
          call estimator%begin_increment(simulation)
+         since = wall_seconds() - simulation%seconds%beside_iteration()
          call advance(simulation, model, record, error)
          if (.not. allocated(error)) then
+            estimated_since = wall_seconds()
             call estimator%end_increment(model, simulation, record)
+            since = since + (wall_seconds() - estimated_since)
             if (self%accuracy%is_on) then
                call simulation%bodies%views(interfaces)
                call self%accuracy%follow(interfaces, record)
@@ -133,6 +137,9 @@ contains
             if (allocated(record%restart)) call estimator%exchange(size(model%contacts), &
                record%restart, error)
          end if
+         associate (seconds => simulation%seconds)
+            seconds%iterate = seconds%iterate + (wall_seconds() - seconds%beside_iteration() - since)
+         end associate
          call taker%take(simulation, record, error)
       end do
       call estimator%release()

@@ -475,11 +475,9 @@ contains
       associate (step => model%steps(run%control%step), bodies => run%bodies, &
          data => attempt%data, workspace => attempt%workspace, next => attempt%next)
          workspace%record%increment = attempt%record%increment
-         since = wall_seconds()
          call solve_points(bodies, run%heat_reductions(run%in_use), run%loads, &
             attempt%trial_type, error)
          attempt%record%solution_report_type = workspace%record
-         run%seconds%iterate = run%seconds%iterate + (wall_seconds() - since)
          if (solves_heat(step%analysis)) then
             ! Bodies whose temperature is undetermined stand in place of whatever followed from it.
             words = undetermined_now(model, bodies%points, run%loads%temperature%active, &

@@ -3,11 +3,12 @@
 import math
 import re
 
+import h5py
 import numpy as np
 import pytest
 from blocks import write
 from changes import note_changes
-from deck_runs import assert_alike, datasets, run, solve
+from deck_runs import CYLINDER, assert_alike, copy_deck, datasets, run, solve
 from inelastic import (OUTSIDE, POISSON, YIELD, YOUNG, A, N, bar, bree, fit, hill, law, left,
                        overlap, pressed, pulled, relaxing, step, strain_of_bree, stretched, tube)
 from physics import follows, judge, material, mesh
@@ -515,3 +516,16 @@ def test_punch_yields_unloads_and_yields_again(kind, tmp_path):
     assert force[np.isclose(times, 2.0)][0] == 0.0   # a dent is left
     assert one["history/largest_plastic_strain"].max() > 0.01
     assert mortar["contact/RUB/normal_force"][-1] == pytest.approx(force[-1], rel=0.05)
+
+
+def test_stages_of_a_run_that_corrects_its_bodies_add_up_to_its_time(tmp_path):
+    """Without uncertainties: the sum is what a run without them takes."""
+    deck = copy_deck(CYLINDER.with_stem("cylinder-yielding"), tmp_path / "deck.inp",
+                     ["*OPTIONS, ERRORS=NO"], {"20., 900.": "60., 900."})
+    deck.write_text(deck.read_text().split("*VERIFY")[0])
+    process = run("run", deck, "--out", tmp_path)
+    assert process.returncode == 0, process.stderr
+    with h5py.File(deck.with_suffix(".vtkhdf")) as file:
+        spent = sum(value for name, value in file["run"].attrs.items() if name.startswith("seconds_"))
+    told = float(re.search(r"increments in (\S+) s", process.stdout)[1])
+    assert 0.85 * told < spent < 1.02 * told
