@@ -63,6 +63,7 @@ module summary
       !> The largest magnitude of a displacement [length]
       real(dp), allocatable :: displacement
       character(:), allocatable, private :: cycle             !! what the last cycle did, or none
+      character(:), allocatable, private :: many_increments   !! why a step had so many, or nothing
       type(string_type), allocatable, private :: steps(:)     !! a line for each step and interface
       !> Load factors of the folds so far; unallocated for none
       type(string_type), allocatable, private :: folds(:)
@@ -100,6 +101,7 @@ contains
       end if
       self%last = record%increment_outcome_type
       if (allocated(record%cycle)) self%cycle = record%cycle
+      if (allocated(record%many_increments)) self%many_increments = record%many_increments
       if (record%is_fold) call append(self%folds, to_text(record%load_factor))
       if (allocated(self%heat)) deallocate (self%heat)
       if (allocated(self%displacement)) deallocate (self%displacement)
@@ -214,6 +216,7 @@ contains
          self%last%solid_time, history_words(self, model, 'solid_time'), or_blank( &
          model%units%time), ''))
       if (allocated(self%cycle)) call append(lines, self%cycle)
+      if (allocated(self%many_increments)) call append(lines, self%many_increments)
       words = stability_words(self%last, or_blank(model%units%time))
       if (words /= '') call append(lines, words)
       words = leading_words(self%last, or_blank(model%units%time))

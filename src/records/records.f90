@@ -140,6 +140,7 @@ module records
       real(dp) :: heat_in = 0.0_dp           !! sum of the net rates that are positive [power]
       real(dp) :: heat_out = 0.0_dp          !! magnitude of the sum of the negative ones [power]
       character(:), allocatable :: cycle     !! what a cycle did that it ends; unallocated for none
+      character(:), allocatable :: many_increments   !! of a step that it ends, why; or unallocated
       !> (2, bodies) largest equivalent plastic and creep strain; unallocated without laws
       real(dp), allocatable :: inelastic_strain(:, :)
       !> (sections) across pre-tension sections; unallocated before mechanics is solved [force]

@@ -23,6 +23,7 @@ module increment_control
    real(dp), parameter :: aim = 0.7_dp             !! part of it that they are made for
    real(dp), parameter :: slip_aim = 0.95_dp       !! part of the spacing that the next one may slip
    real(dp), parameter :: same = 0.1_dp            !! relative difference of errors that are alike
+   integer, parameter :: many = 100                !! increments that a step has without INC=
 
    !> Position in the steps, and size of the next increment.
    type :: increment_control_type
@@ -56,6 +57,7 @@ module increment_control
       procedure :: can_cut_back
       procedure :: cut_back
       procedure :: why_not_again
+      procedure :: explain_many
    end type increment_control_type
 
 contains
@@ -362,6 +364,28 @@ contains
          if (self%cut_backs > 0) words = words//', after '//counted(self%cut_backs, 'cut-back')
       end if
    end function why_not_again
+
+   !> Says which error keeps the increments of a step short where these are more than INC= allows by
+   !> default.
+   pure subroutine explain_many(self, model, clock, record)
+      class(increment_control_type), intent(in) :: self      !! before it accepts the increment
+      type(model_type), intent(in) :: model
+      type(step_clock_type), intent(in) :: clock             !! its end
+      type(increment_record_type), intent(inout) :: record   !! of it
+      character(:), allocatable :: words
+
+      if (self%increments_of_step < many .or. .not. adapts_increments(model%steps(self%step))) return
+      associate (step => model%steps(self%step), taken => excess(model%steps(self%step), record))
+         if (taken*(2.0_dp*self%largest/self%size_to(clock))**2 <= aim) return
+         words = 'LOCAL ERROR='//to_text(step%local_error)
+         if (taken <= record%creep_difference/step%creep_tolerance) words = 'CETOL='// &
+            to_text(step%creep_tolerance)
+         if (taken <= (record%largest_change/step%largest_change)**2) words = 'DELTMX='// &
+            to_text(step%largest_change)
+         record%many_increments = to_text(self%increments_of_step + 1)//' increments in step '// &
+            to_text(self%step)//', kept short by '//words
+      end associate
+   end subroutine explain_many
 
    !> The end of the next increment: the next multiple of the first increment, reckoned and not
    !> added up, or an earlier instant on which the step must land; short of these where increments

@@ -47,6 +47,8 @@ contains
             status_no_convergence, 'step '//to_text(control%step)//' is not finished after INC='// &
             counted(step%max_increments, 'increment')//', at '//to_text(control%step_time)// &
             ' of its period '//to_text(step%period))
+         if (allocated(error) .and. adapts_increments(step)) error%message = error%message// &
+            '; a larger LOCAL ERROR= takes fewer'
       end associate
       if (allocated(error)) return
       call run%reduce(model, error)
@@ -85,6 +87,7 @@ contains
       call move_alloc(attempt%undecided, run%undecided)
       if (is_nth(model%steps(record%step)%stability_frequency, record)) run%solved = &
          attempt%workspace%of_motions()
+      if (record%last_of_step) call run%control%explain_many(model, clock, record)
       call run%control%accept(model, clock, record)
       call close_cycle(run, model, record)
       if (allocated(run%is_beyond)) call note_ends(run, model, record)

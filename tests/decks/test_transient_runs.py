@@ -267,3 +267,24 @@ def test_increments_too_short_to_change_what_many_nodes_hold_balance(tmp_path):
                   "*HEAT TRANSFER, DIRECT", "1.E-9, 3.E-9", "*DFLUX", "BODY, BF, 1.E-6", "*END STEP"])
     with h5py.File(solve(deck)) as file:
         np.testing.assert_allclose(file["history/heat_in"][()], 1e-6, rtol=1e-12)
+
+
+@pytest.mark.parametrize(("how", "told"), [
+    (", DELTMX=0.75", "kept short by DELTMX=0.75"), (", DELTMX=1.5", ""),
+    (", LOCAL ERROR=1.E-8", "kept short by LOCAL ERROR=1E-8")])
+def test_the_summary_says_what_makes_increments_of_a_step_many(tmp_path, how, told):
+    """A bar that is heated by 100 in all, evenly or from one end: more than 100 increments."""
+    heat = ["*DFLUX", "BAR, BF, 100."] if "DELTMX" in how else ["*BOUNDARY", "BAR.LEFT, 11, 11, 100."]
+    cards = [*mesh("BAR", [0.0, 1.0, 2.0], [0.0, 1.0], "CPE4"), *material(
+        "BAR", conductivity=1.0, density=1.0, specific_heat=1.0), "*INITIAL CONDITIONS, "
+        "TYPE=TEMPERATURE", "BAR, 0."]
+    step = ["*STEP, INC=1000000", f"*HEAT TRANSFER{how}", "0.01, 1.", *heat, "*END STEP"]
+    process = run("run", write(tmp_path / "bar.inp", cards + step), "--out", tmp_path)
+    assert process.returncode == 0, process.stderr
+    line = re.search(r"^  (\d+) increments in step 1, (.*)$", process.stdout, re.MULTILINE)
+    assert (line[2] if line else "") == told
+    if told:
+        assert int(line[1]) > 100
+    step[0] = "*STEP, INC=20"
+    process = run("run", write(tmp_path / "few.inp", cards + step), "--out", tmp_path)
+    assert "of its period 1; a larger LOCAL ERROR= takes fewer" in process.stderr
