@@ -137,9 +137,8 @@ contains
             if (allocated(record%restart)) call estimator%exchange(size(model%contacts), &
                record%restart, error)
          end if
-         associate (seconds => simulation%seconds)
-            seconds%iterate = seconds%iterate + (wall_seconds() - seconds%beside_iteration() - since)
-         end associate
+         simulation%seconds%iterate = simulation%seconds%iterate + (wall_seconds() - &
+            simulation%seconds%beside_iteration() - since)
          call taker%take(simulation, record, error)
       end do
       call estimator%release()

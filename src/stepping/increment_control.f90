@@ -374,8 +374,8 @@ contains
       type(increment_record_type), intent(inout) :: record   !! of it
       character(:), allocatable :: words
 
-      if (self%increments_of_step < many .or. .not. adapts_increments(model%steps(self%step))) return
       associate (step => model%steps(self%step), taken => excess(model%steps(self%step), record))
+         if (self%increments_of_step < many .or. .not. adapts_increments(step)) return
          if (taken*(2.0_dp*self%largest/self%size_to(clock))**2 <= aim) return
          words = 'LOCAL ERROR='//to_text(step%local_error)
          if (taken <= record%creep_difference/step%creep_tolerance) words = 'CETOL='// &
