@@ -109,7 +109,7 @@ contains
       type(error_estimator_type), allocatable :: estimator
       type(contact_points_type), allocatable :: interfaces(:)
       type(round_indicators_type) :: indicators
-      real(dp) :: estimated_since, since
+      real(dp) :: since
 
       allocate (estimator)
       call estimator%start(model)
@@ -121,9 +121,9 @@ contains
          since = wall_seconds() - simulation%seconds%beside_iteration()
          call advance(simulation, model, record, error)
          if (.not. allocated(error)) then
-            estimated_since = wall_seconds()
+            since = since - wall_seconds()
             call estimator%end_increment(model, simulation, record)
-            since = since + (wall_seconds() - estimated_since)
+            since = since + wall_seconds()
             if (self%accuracy%is_on) then
                call simulation%bodies%views(interfaces)
                call self%accuracy%follow(interfaces, record)

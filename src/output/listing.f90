@@ -185,6 +185,8 @@ contains
             record%history_uncertainties)
       end if
       call print_requested(self%page, tables, model)
+      self%summary%printed = self%summary%printed + sum([(merge(size(tables(i)%member), 0, &
+         size(tables(i)%columns) > 0), i=1, size(tables))])
       if (has_tables) then
          do i = 1, size(interfaces)
             call print_contact_table(self%page, interfaces(i), record%contacts(i), &

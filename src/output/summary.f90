@@ -55,6 +55,8 @@ module summary
    character(*), parameter :: heat_units(4) = [character(11) :: 'temperature', 'temperature', &
       'power', 'power']
 
+   integer, parameter :: many_rows = 10000
+
    !> Results of the last accepted increment.
    type :: summary_type
       type(increment_outcome_type) :: last                    !! its number is 0 before the first
@@ -64,6 +66,7 @@ module summary
       real(dp), allocatable :: displacement
       character(:), allocatable, private :: cycle             !! what the last cycle did, or none
       character(:), allocatable, private :: many_increments   !! why a step had so many, or nothing
+      integer :: printed = 0                                  !! rows of tables that were asked for
       type(string_type), allocatable, private :: steps(:)     !! a line for each step and interface
       !> Load factors of the folds so far; unallocated for none
       type(string_type), allocatable, private :: folds(:)
@@ -217,6 +220,8 @@ contains
          model%units%time), ''))
       if (allocated(self%cycle)) call append(lines, self%cycle)
       if (allocated(self%many_increments)) call append(lines, self%many_increments)
+      if (self%printed > many_rows) call append(lines, to_text(self%printed)//' rows of *NODE '// &
+         'PRINT and *EL PRINT in listing and result file; FREQUENCY= prints fewer')
       words = stability_words(self%last, or_blank(model%units%time))
       if (words /= '') call append(lines, words)
       words = leading_words(self%last, or_blank(model%units%time))

@@ -263,6 +263,18 @@ def test_frequency_and_steps(tmp_path):
     assert found[-1][3] == ["element", "point", "x", "y"]
 
 
+def test_the_summary_counts_many_rows(tmp_path):
+    """A thousand nodes ten times; sums over sets are no rows of them."""
+    lines = [float(x) for x in np.linspace(0.0, 1.0, 32)]
+    body = [*mesh("BLOCK", lines, lines, "CPE4"), *material("BLOCK", (YOUNG, POISSON)), *HELD]
+    for card, told in (("NSET=BLOCK", True), ("NSET=BLOCK, FREQUENCY=2", False),
+                       ("NSET=BLOCK, TOTALS=ONLY", False)):
+        deck = write(tmp_path / "deck.inp", body, static(f"*NODE PRINT, {card}", "RF", times="0.1, 1."))
+        process = run("run", deck, "--out", tmp_path)
+        assert process.returncode == 0, process.stderr
+        assert (f"  {10 * 32 * 32} rows of *NODE PRINT and *EL PRINT" in process.stdout) == told
+
+
 def test_what_a_step_has_not_is_said(tmp_path):
     """Heat comes first, so that there is no stress yet; mechanics alone has no flux."""
     both = ["*NODE PRINT, NSET=BLOCK.TOP", "U, NT", "*EL PRINT, ELSET=BLOCK", "S, HFL"]
