@@ -51,7 +51,7 @@ module element_patches
    !> Root mean square over the sites of what is new in a term, below which the sites do not tell
    !> it from the terms before: a single row of elements has no slope, or no curvature, across.
    real(dp), parameter :: undetermined = 0.1_dp
-   !> Least variance of corners in a direction, over that of the sites: corners may lie on a line.
+   !> Least variance of corners on a line across it, over that along it and that of the sites.
    real(dp), parameter :: on_a_line = 1.0e-4_dp
 
    !> Orthogonal polynomials over sites.
@@ -353,7 +353,7 @@ contains
    !> may lie on a line, as those of half a ring that is one element; sites beside it do not.
    pure function scaling_of(corners, sites, centre) result(scaling)
       real(dp), intent(in) :: corners(:, :), sites(:, :), centre(2)
-      real(dp) :: scaling(2, 2), xx, yy, xy, angle, axis(2), unit, of_sites, variance
+      real(dp) :: scaling(2, 2), xx, yy, xy, angle, axis(2), unit, variance
       integer :: i
 
       unit = maxval(abs(corners - spread(centre, 2, size(corners, 2))))
@@ -365,9 +365,9 @@ contains
       do i = 1, 2
          axis = merge([cos(angle), sin(angle)], [-sin(angle), cos(angle)], i == 1)
          variance = (axis(1)**2*xx + axis(2)**2*yy + 2*axis(1)*axis(2)*xy)/size(corners, 2)
-         of_sites = sum((matmul(axis, sites - spread(centre, 2, size(sites, 2)))/unit)**2)/ &
-            size(sites, 2)
-         scaling(i, :) = axis/(unit*sqrt(max(variance, on_a_line*of_sites)))
+         if (variance < on_a_line*(xx + yy)/size(corners, 2)) variance = max(variance, on_a_line* &
+            sum((matmul(axis, sites - spread(centre, 2, size(sites, 2)))/unit)**2)/size(sites, 2))
+         scaling(i, :) = axis/(unit*sqrt(variance))
       end do
    end function scaling_of
 
