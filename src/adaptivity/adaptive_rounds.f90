@@ -118,7 +118,8 @@ contains
       call indicators%start(model)
       do while (.not. (allocated(error) .or. simulation%finished(model)))
          call estimator%begin_increment(simulation)
-         since = wall_seconds() - simulation%seconds%beside_iteration()
+         since = wall_seconds() - (simulation%seconds%assemble + simulation%seconds%reduce + &
+            simulation%seconds%recover)
          call advance(simulation, model, record, error)
          if (.not. allocated(error)) then
             since = since - wall_seconds()
@@ -137,8 +138,11 @@ contains
             if (allocated(record%restart)) call estimator%exchange(size(model%contacts), &
                record%restart, error)
          end if
-         simulation%seconds%iterate = simulation%seconds%iterate + (wall_seconds() - &
-            simulation%seconds%beside_iteration() - since)
+         ! What is in no other stage.
+         associate (seconds => simulation%seconds)
+            seconds%iterate = seconds%iterate + (wall_seconds() - since - (seconds%assemble + &
+               seconds%reduce + seconds%recover))
+         end associate
          call taker%take(simulation, record, error)
       end do
       call estimator%release()

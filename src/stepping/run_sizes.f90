@@ -24,8 +24,6 @@ module run_sizes
       real(dp) :: reduce = 0.0_dp     !! factors and reduction to the contact points [s]
       real(dp) :: iterate = 0.0_dp    !! what increments take besides, without uncertainties [s]
       real(dp) :: recover = 0.0_dp    !! fields and balances [s]
-   contains
-      procedure :: beside_iteration
    end type run_seconds_type
 
    !> The largest problems of a run.
@@ -39,13 +37,6 @@ module run_sizes
    end type run_size_type
 
 contains
-
-   !> What all other stages took.
-   pure real(dp) function beside_iteration(self)
-      class(run_seconds_type), intent(in) :: self
-
-      beside_iteration = self%assemble + self%reduce + self%recover
-   end function beside_iteration
 
    !> Numbers every step in turn, for the largest problems and for mistakes in its supports.
    !> Errors: as check_equations and check_prescribed.

@@ -5,7 +5,8 @@ import sys
 from contextlib import ExitStack
 from itertools import chain
 
-from . import accuracy, branch, convergence, courses, fields, history, mesh, profiles, style, trade, zones
+from . import (accuracy, branch, convergence, courses, edge, fields, history, mesh, profiles, style,
+               trade, zones)
 from .deck_changes import changed
 from .errors import UserError, nearest_name, program
 from .result import FIELD_SOURCES, MODE, Result
@@ -62,6 +63,7 @@ def parser():
         "profiles": ("pressure, friction, mu p and heat flux along the contact", WITH_PROFILES),
         "zones": ("open, slip and stick against the load", WITH_ZONES),
         "fields": ("temperature and stress on the deformed mesh", None),
+        "edge": ("fields along the outline of a body, such as a free face, over the arc length", None),
         "courses": ("pressure, force, gap, temperatures and heat over time, or over the load", None),
         "history": ("nodes and elements of *NODE PRINT and *EL PRINT over time, or over the load", None),
         "branch": ("a quantity over the load factor of *CONTINUATION, unstable parts dashed", None),
@@ -79,7 +81,7 @@ def parser():
     )
     table = add_picture(pictures, "trade", "errors over CPU seconds of the rows of thercon trade")
     table.add_argument("table", metavar="FILE", help="NAME.trade.csv of `thercon trade`")
-    for name in ("profiles", "fields"):
+    for name in ("profiles", "fields", "edge"):
         add_loads(added[name])
     for name in ("profiles", "zones"):
         add_contact(added[name])
@@ -91,7 +93,14 @@ def parser():
         help="range of the values of a panel, such as pressure 0 300, the same in several pictures; may "
         "be given for several",
     )
+    for name in ("fields", "edge"):
+        add_quantity(added[name])
     add_fields(added["fields"])
+    added["edge"].add_argument(
+        "--nodes", action="append", type=int, required=True, metavar="N ...",
+        help="nodes of the deck on the outline: the first, the last, and others between them that the "
+        "way passes; each part is the shortest",
+    )
     add_name(added["courses"])
     added["history"].add_argument(
         "--set", action="append", metavar="NAME ...",
@@ -177,8 +186,8 @@ def add_name(picture):
     )
 
 
-def add_fields(picture):
-    """Add what only `fields` has."""
+def add_quantity(picture):
+    """Add the choice of fields."""
     picture.add_argument(
         "--quantity",
         action="append",
@@ -188,6 +197,10 @@ def add_fields(picture):
         f"(default: those present of {', '.join(fields.USUAL[False])}; zz in place of yy for elements "
         f"CPEG...; in axisymmetry {', '.join(fields.USUAL[True])})",
     )
+
+
+def add_fields(picture):
+    """Add what only `fields` has."""
     picture.add_argument(
         "--colours",
         choices=("panel", "body"),
@@ -278,7 +291,8 @@ def is_number(word):
 
 
 # Options that take several values -> what tells a value from the RESULT that may follow.
-SEVERAL = {"--load": is_number, "--increment": is_number, "--quantity": is_name, "--set": is_set}
+SEVERAL = {"--load": is_number, "--increment": is_number, "--nodes": is_number, "--quantity": is_name,
+           "--set": is_set}
 
 
 def run(arguments):
@@ -292,7 +306,7 @@ def run(arguments):
         options.note = "\n".join(filter(None, map(changed, results)))
         say(options.note.splitlines())
         of_several = {"convergence": convergence, "zones": zones}
-        of_one = {"mesh": mesh, "profiles": profiles, "fields": fields}
+        of_one = {"mesh": mesh, "profiles": profiles, "fields": fields, "edge": edge}
         of_one |= {"accuracy": accuracy, "courses": courses, "branch": branch}
         of_one |= {"history": history}
         if options.picture in of_several:
