@@ -17,6 +17,7 @@ module fixed_point
    !> One pass of U; then where the next one starts.
    type :: pass_type
       integer :: iteration = 0                !! pass, from 1
+      logical :: is_lost = .false.            !! whether the heat runs away from its method
       logical :: found = .true.               !! whether its contact zones were found
       real(dp), allocatable :: omega(:)       !! (m) omega*
       real(dp), allocatable :: image(:)       !! (m) U(omega*)

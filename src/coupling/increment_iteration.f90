@@ -33,7 +33,7 @@ module increment_iteration
    integer, parameter :: most_turns = 4  !! openings and closings of a contact point whose law jumps
    integer, parameter :: on_path = 10     !! passes with a path, over those of the method itself
    real(dp), parameter :: no_strain = 1.0_dp  !! thermal strain that is none of the small ones
-   integer, parameter :: most_away = 5    !! passes with larger ones from which no method returns
+   integer, parameter :: most_away = 5    !! passes with larger ones after which a method is lost
    !> Part of a residual that the next pass leaves, above which steps follow how edges move.
    real(dp), parameter :: slow = 0.05_dp
    integer, parameter :: fewest_steps = 20   !! passes of Newton's method before another is tried
@@ -249,7 +249,11 @@ contains
                passes(i)%residual)
             if (passes(i)%residual <= wanted) exit
             away = merge(away + 1, 0, runs_away(bodies, next%jump))
-            if (away >= merge(1, most_away, accelerator%follows_path)) exit
+            pass%is_lost = away >= most_away
+            if (pass%is_lost) then
+               if (accelerator%follows_path .or. controls%method /= method_newton) exit
+               away = 0   ! from here on by a path
+            end if
             where ((next%contact%contact_state == contact_open) .neqv. &
                (good%contact_state == contact_open)) turns = turns + 1
             if (controls%method /= method_newton .and. any(turns > most_turns .and. &

@@ -14,9 +14,10 @@
 !> & Toint 2004). Else its step is shortened. Where a short one does not help either, the method
 !> goes over to pseudo-transient continuation: (M/tau + J) dz = -r, implicit Euler steps of M dz/dt
 !> = -r whose tau grows as |r| falls (Kelley & Keyes 1998). That leads to a state which is stable in
-!> this sense, and there the steps are Newton's again. Where all passes are used up, the method
-!> follows a path that leads to a solution wherever it starts (homotopy). On a sparse tail J is not
-!> formed: steps, also those of the path, come from products with it (newton_products).
+!> this sense, and there the steps are Newton's again. Where all passes are used up, or the heat of
+!> several of them runs away, the method follows a path that leads to a solution wherever it starts
+!> (homotopy). On a sparse tail J is not formed: steps, also those of the path, come from products
+!> with it (newton_products).
 module newton
    use conductance_graph, only: conductance_graph_type
    use dense, only: eigenvalues, lu_type
@@ -177,7 +178,7 @@ contains
          end if
       end if
       call try(self, pass)
-      if (pass%iteration < self%most_steps) return
+      if (pass%iteration < self%most_steps .and. .not. pass%is_lost) return
       allocate (self%path)
       self%follows_path = .true.
       call self%path%begin(pass%graph, pass%opening, pass%coordinate)

@@ -205,7 +205,9 @@ contains
       allocate (own(size(place)), source=0.0_dp)
       allocate (body(size(place)), source=1.0_dp)
       associate (start => bodies%points%interface_start, workspace => trial%workspace)
-         place = [(modulo(k - start(bodies%points%interface(k)), apart), k=1, size(place))]
+         ! Neighbouring interfaces apart.
+         place = [(modulo(k - start(bodies%points%interface(k)), apart) + apart* &
+            modulo(bodies%points%interface(k), 2), k=1, size(place))]
          do i = 0, maxval(place)
             call find_changes(bodies, heat, trial, tangent, merge(1.0_dp, 0.0_dp, place == i), &
                of_tail, change)

@@ -234,7 +234,7 @@ def stack(tail, expansions, width, law, gap, temperatures, source):
 
 
 @pytest.mark.parametrize("plates", [
-    ((4e-5, 1e-5, 4e-5, 0.0), 1.0, (2.8e-5, 7.6e-6, 2.0, 5.2e-3), 3.3e-3, (500.0, -500.0), 900.0),
+    ((1e-5, 4e-5, 4e-5, 2e-5, 0.0), 2.0, (9.6e-4, 1e-5, 78.0, 0.11), 1.7e-5, (0.0, -500.0), 790.0),
     ((0.0, 4e-5, 2e-5, 4e-5, 1e-5), 2.0, (2.1e-3, 5.4e-6, 390.0, 0.429), 3.1e-5, (0.0, -500.0), 4100.0)])
 def test_the_path_on_a_sparse_tail_leads_where_that_with_the_full_matrix_leads(tmp_path, plates):
     found = {}
@@ -244,6 +244,16 @@ def test_the_path_on_a_sparse_tail_leads_where_that_with_the_full_matrix_leads(t
         found[tail] = contact_of(result := solve(deck))
         with h5py.File(result) as file:
             assert file["history/iterations"][-1] > without_path
+    assert_same(found["SPARSE"], found["FULL"])
+
+
+def test_a_path_leads_on_where_the_heat_of_newtons_steps_runs_away(tmp_path):
+    plates = ((1e-5, 2e-5, 0.0, 1e-5, 0.0, 2e-5), 2.0, (8.6e-6, 3.4e-6, 3.8, 2.9e-3), 1.2e-5,
+              (-500.0, -500.0), 1400.0)
+    found = {}
+    for tail in ("FULL", "SPARSE"):
+        cards = [card.replace(", MAXITER=20", "") for card in stack(tail, *plates)]
+        found[tail] = contact_of(solve(write(tmp_path / f"{tail}.inp", cards)))
     assert_same(found["SPARSE"], found["FULL"])
 
 
