@@ -71,6 +71,7 @@ module reduced_bodies
       !> (2 nodes) where contact points lie on displaced faces; unallocated where none does [length]
       real(dp), allocatable :: faces_at(:)
       real(dp), allocatable :: worn(:)   !! (m) wear that is part of the gaps, or none [length]
+      real(dp), allocatable, private :: unworn_gap(:)  !! (m) initial gaps without it [length]
       !> All of them as they were matched last, where some follow sliding
       type(contact_points_type), allocatable, private :: matched(:), matched_ties(:)
       ! Key of the numbering: supports, contact points with friction, prescribed temperatures.
@@ -132,7 +133,10 @@ contains
       call join_points(self%interfaces, self%ties, model, self%points)
       deallocate (self%ties)
       self%laws = laws_of_step(model, self%points, 1)
-      if (allocated(self%laws%wear)) allocate (self%worn(size(self%points%slave)), source=0.0_dp)
+      if (allocated(self%laws%wear)) then
+         allocate (self%worn(size(self%points%slave)), source=0.0_dp)
+         self%unworn_gap = self%points%initial_gap
+      end if
       if (has_sparse_tail(model, real(size(self%points%slave), dp)) .or. &
          allocated(self%faces_at)) then
          self%mechanical%division%graph = joined_nodes(model)
@@ -261,8 +265,10 @@ contains
       self%interfaces = self%matched
       call join_points(self%interfaces, self%matched_ties, model, self%points)
       self%laws = laws_of_step(model, self%points, step)
-      if (allocated(self%worn)) self%points%initial_gap = self%points%initial_gap + &
-         self%laws%worn_part*self%worn
+      if (allocated(self%worn)) then
+         self%unworn_gap = self%points%initial_gap
+         call self%wear_to((self%worn))
+      end if
       self%is_coupled = self%couples(model, step)
       if (allocated(self%prescribed)) self%has_friction = self%laws%friction%coefficient > 0.0_dp
       call self%number(model, self%prescribed, self%held_temperature, allocated(self%prescribed), &
@@ -274,8 +280,8 @@ contains
       class(reduced_bodies_type), intent(inout) :: self !! in a step with laws of wear
       real(dp), intent(in) :: depth(:)                       !! (m) of both faces [length]
 
-      self%points%initial_gap = self%points%initial_gap + self%laws%worn_part*(depth - self%worn)
       self%worn = depth
+      self%points%initial_gap = self%unworn_gap + self%laws%worn_part*depth
    end subroutine wear_to
 
    !> Whether heat depends on the mechanics of a step, at the contact points as they are placed.

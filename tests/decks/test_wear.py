@@ -182,11 +182,17 @@ def test_a_motion_to_and_fro_wears_both_ways(tmp_path):
     assert found["wear_slave"][-1] == pytest.approx(2 * K * PRESSURE * SPEED, rel=1e-8)
 
 
-def test_a_run_goes_on_from_a_worn_state_to_the_last_bit(tmp_path):
-    cards = bar(0.1, friction=0.1, sliding=", SLIDING=FINITE")
+@pytest.mark.parametrize("sliding", [False, True])
+def test_a_run_goes_on_from_a_worn_state_to_the_last_bit(tmp_path, sliding):
+    if sliding:
+        cards = bar(0.1, friction=0.1, sliding=", SLIDING=FINITE")
+    else:
+        cards = bar(0.1, friction=0.3, speed=0.02, law=(f"{3e3 * K}, 1.",), width=1.7)
+        cards.insert(cards.index("*STEP"),
+                     "*CLEARANCE, SLAVE=BAR.BOTTOM, MASTER=WALL.TOP, VALUE=0.00123")
     whole = solve_as_written(write(tmp_path / "deck.inp", ["*RESTART, WRITE", *cards]))
-    part = go_on(tmp_path / "deck.inp", whole, tmp_path / "part", 1.5)
-    assert_same(whole, part)
+    for at in (1.5,) if sliding else (1.3, 1.5, 1.7, 1.8):
+        assert_same(whole, go_on(tmp_path / "deck.inp", whole, tmp_path / f"from{at}", at))
 
 
 def test_its_uncertainty_holds_the_exact_volume(tmp_path):
