@@ -168,7 +168,7 @@ contains
       type(error_type), allocatable, intent(out) :: error
 
       table%prefix = 'finer_'
-      if (table%is_restoring()) then
+      if (table%restores) then
          call bring_to(self%model, self%run, table, error)
       else
          call exchange_run(self%run, table)

@@ -158,7 +158,7 @@ contains
       target = pack(self%target, self%active)
       call reals(table, name//'_start', start)
       call reals(table, name//'_target', target)
-      if (.not. table%is_restoring()) return
+      if (.not. table%restores) return
       self%start = unpack(start, self%active, self%start)
       self%target = unpack(target, self%active, self%target)
    end subroutine exchange

@@ -100,10 +100,11 @@ module processes
          integer(c_long), value :: offset
       end function c_read
 
-      subroutine c_file_report(report) bind(c, name='thercon_file_report')
+      !> A child says how far it is; in the first process nothing happens.
+      subroutine file_report(report) bind(c, name='thercon_file_report')
          import :: report_type
          type(report_type), intent(in) :: report
-      end subroutine c_file_report
+      end subroutine file_report
 
       type(c_ptr) function c_share(bytes) bind(c, name='thercon_share')
          import :: c_ptr, c_size_t
@@ -246,13 +247,6 @@ contains
 
       name = text_of(self%end%signal_name)
    end function signal_name
-
-   !> A child says how far it is; in the first process nothing happens.
-   subroutine file_report(report)
-      type(report_type), intent(in) :: report
-
-      call c_file_report(report)
-   end subroutine file_report
 
    !> Puts a reason into a report; what is too long is cut.
    pure subroutine set_reason(report, words)

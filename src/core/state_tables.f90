@@ -18,11 +18,9 @@ module state_tables
       integer, allocatable :: sizes(:)                  !! likewise; negative: not there
       real(dp), allocatable :: values(:)                !! (count, or more) of all arrays
       character(16) :: prefix = ''                      !! of the names that follow
-      logical, private :: restores = .false.            !! whether arrays go back into a state
+      logical :: restores = .false.                     !! whether arrays go back into a state
    contains
       procedure :: begin
-      procedure :: begin_restoring
-      procedure :: is_restoring
    end type state_table_type
 
 contains
@@ -33,21 +31,6 @@ contains
 
       allocate (self%names(first_arrays), self%sizes(first_arrays), self%values(first_values))
    end subroutine begin
-
-   !> From now on arrays are taken from the table.
-   subroutine begin_restoring(self)
-      class(state_table_type), intent(inout) :: self
-
-      self%restores = .true.
-      self%prefix = ''
-   end subroutine begin_restoring
-
-   !> Whether arrays are taken from the table.
-   pure logical function is_restoring(self)
-      class(state_table_type), intent(in) :: self
-
-      is_restoring = self%restores
-   end function is_restoring
 
    !> Adds an array to the table, or takes it from there: as the state had it, allocated or not. One
    !> that the table does not name stays.

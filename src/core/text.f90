@@ -5,8 +5,8 @@ module text
    use kinds, only: dp, long
    implicit none
    private
-   public :: string_type, others, counted, listed, to_text, all_digits, few_digits, rounded, &
-      digits_above, with_decimals, or_blank, percent, quoted, to_upper, without_blanks, &
+   public :: named_type, string_type, others, counted, listed, to_text, all_digits, few_digits, &
+      rounded, digits_above, with_decimals, or_blank, percent, quoted, to_upper, without_blanks, &
       is_same_name, read_integer, read_real, append, is_whole, integer_fault, real_fault, &
       smallest_magnitude, largest_magnitude, split_words
 
@@ -20,6 +20,12 @@ module text
    type :: string_type
       character(:), allocatable :: value   !! the text
    end type string_type
+
+   !> Ancestor of all that a deck defines by a name: sets, surfaces, materials, contact pairs, ...
+   type :: named_type
+      !> in upper case; that of a contact pair as the deck writes it
+      character(:), allocatable :: name
+   end type named_type
 
    interface
       !> Takes a fifth of the instructions of a read statement, which calls it, too.

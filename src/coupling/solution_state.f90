@@ -113,7 +113,7 @@ contains
       call reals(self, 'smallest_gap', state%smallest_gap)
       if (allocated(state%reaction)) reaction = [state%reaction]
       call reals(self, 'reaction', reaction)
-      if (self%is_restoring()) then
+      if (self%restores) then
          if (allocated(state%reaction)) deallocate (state%reaction)
          if (allocated(reaction)) state%reaction = reshape(reaction, [2, size(reaction)/2])
       end if

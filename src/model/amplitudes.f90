@@ -1,7 +1,7 @@
 !> Load curves, and the value that a load has at an instant of a step.
 module amplitudes
    use kinds, only: dp
-   use named_items, only: named_type
+   use text, only: named_type
    use conductance_laws, only: line_value
    implicit none
    private

@@ -4,7 +4,7 @@ module contact_definitions
    use conductance_laws, only: conductance_law_type
    use friction_laws, only: friction_heat_type, friction_law_type
    use kinds, only: dp
-   use named_items, only: named_type
+   use text, only: named_type
    use overlap_laws, only: overlap_law_type
    use wear_laws, only: wear_law_type
    implicit none

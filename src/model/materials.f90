@@ -5,7 +5,7 @@ module materials
    use element_kinds, only: plane_stress
    use kinds, only: dp
    use material_laws, only: material_law_type
-   use named_items, only: named_type
+   use text, only: named_type
    use table_rows, only: find_row, row_below
    implicit none
    private

@@ -4,7 +4,7 @@
 module mesh
    use drawn_lines, only: drawn_line_type
    use kinds, only: dp
-   use named_items, only: named_type
+   use text, only: named_type
    implicit none
    private
    public :: mesh_type, set_type, surface_type, extent_of, add_node, nodes_per_element

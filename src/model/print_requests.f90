@@ -2,7 +2,7 @@
 module print_requests
    use kinds, only: dp
    use mesh, only: set_type
-   use named_items, only: named_type
+   use text, only: named_type
    implicit none
    private
    public :: print_request_type, time_points_type, print_displacement, print_temperature, &

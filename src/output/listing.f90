@@ -13,7 +13,7 @@ module listing
       print_history_uncertainties, print_increment, print_interface, print_interfaces, &
       print_maxima, print_uncertainties
    use listing_tables, only: print_contact_table, print_iterations, print_requested, &
-      print_verdicts, uncertainties_of
+      print_verdicts, uncertainties_of, zone_diagram_type
    use listing_text, only: page_type, page_width, to_right
    use model, only: follows_temperatures, model_type
    use model_words, only: has_many
@@ -25,7 +25,6 @@ module listing
    use summary, only: summary_type
    use text, only: append, counted, or_blank, string_type, to_text, with_decimals
    use verification, only: verifier_type
-   use zone_diagram, only: zone_diagram_type
    implicit none
    private
    public :: listing_type

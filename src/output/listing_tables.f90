@@ -1,15 +1,16 @@
 !> Tables of the listing: *CONTACT PRINT, *NODE PRINT, *EL PRINT, the iteration history, the *VERIFY
-!> verdicts.
+!> verdicts, zone diagrams.
 module listing_tables
    use contact_points, only: contact_points_type
    use contact_quantities, only: contact_values, geometry_values, has_quantity
    use increment_quantities, only: pass_value
    use kinds, only: dp
-   use listing_text, only: column, in_columns, page_type, table_heads, table_row, to_right
+   use listing_text, only: column, in_columns, page_type, table_heads, table_row, to_right, &
+      zone_numeral
    use model, only: model_type, uncertainty_full, verify_type
    use no_estimates, only: mark_of, of_points
    use quantity_types, only: of_contact_points, of_passes, quantity_type
-   use records, only: contact_record_type
+   use records, only: contact_record_type, increment_record_type
    use reported_quantities, only: quantities
    use requested_tables, only: requested_table_type, table_column_type
    use solution_report, only: iteration_record_type
@@ -18,12 +19,27 @@ module listing_tables
    implicit none
    private
    public :: print_contact_table, print_iterations, print_requested, print_verdicts, &
-      uncertainties_of
+      uncertainties_of, zone_diagram_type
 
    character(*), parameter :: uncertainties_of = 'UNCERTAINTIES (95 %) OF '
 
    character(*), parameter :: node_head = '    node           x           y'
    character(*), parameter :: point_head = ' element point           x           y'
+
+   integer, parameter :: panel_columns = 28 !! contact points that are side by side on 132 columns
+
+   !> The line-printer zone diagram of an interface: one row an increment, one column a contact
+   !> point, I (open), II (slip), III (stick).
+   type :: zone_diagram_type
+      private
+      integer :: rows = 0                         !! increments so far
+      integer, allocatable :: increment(:)        !! (rows) their numbers
+      real(dp), allocatable :: load(:)            !! (rows) their load
+      integer, allocatable :: contact_state(:, :) !! (contact points, rows) contact states
+   contains
+      procedure :: add => add_increment
+      procedure :: print => print_diagram
+   end type zone_diagram_type
 
 contains
 
@@ -231,5 +247,59 @@ contains
       call page%line('')
       call page%line(title//': there is no '//trim(key)//' at this increment')
    end subroutine print_absence
+
+   !> Adds an increment to a zone diagram.
+   subroutine add_increment(self, record, contact_state)
+      class(zone_diagram_type), intent(inout) :: self
+      type(increment_record_type), intent(in) :: record
+      integer, intent(in) :: contact_state(:)            !! (contact points) contact states
+      integer :: n
+
+      if (.not. allocated(self%load)) allocate (self%increment(0), self%load(0), &
+         self%contact_state(size(contact_state), 0))
+      if (self%rows == size(self%load)) then
+         n = max(64, 2*self%rows)
+         self%increment = reshape(self%increment, [n], pad=[0])
+         self%load = reshape(self%load, [n], pad=[0.0_dp])
+         self%contact_state = reshape(self%contact_state, [size(contact_state), n], pad=[0])
+      end if
+      self%rows = self%rows + 1
+      self%increment(self%rows) = record%increment
+      self%load(self%rows) = record%load
+      self%contact_state(:, self%rows) = contact_state
+   end subroutine add_increment
+
+   !> Prints a zone diagram, in several panels where the contact points do not fit side by side.
+   pure subroutine print_diagram(self, page, points)
+      class(zone_diagram_type), intent(in) :: self
+      type(page_type), intent(inout) :: page           !! of the listing
+      type(contact_points_type), intent(in) :: points  !! contact points of the interface
+      character(:), allocatable :: line
+      integer :: m, panels, width, first, last, row, k
+
+      m = size(points%slave)
+      call page%line('')
+      call page%line('ZONE DIAGRAM OF '//points%name//': '//to_text(m)//' contact points in '// &
+         'columns, from s = 0 to s = '//to_text(points%arc_length(m)))
+      call page%line('I open, II slip, III stick')
+      panels = (m + panel_columns - 1)/panel_columns
+      width = (m + panels - 1)/panels
+      do first = 1, m, width
+         last = min(m, first + width - 1)
+         line = ' incr         load'
+         do k = first, last
+            line = line//to_right(to_text(k), 4)
+         end do
+         call page%line('')
+         call page%line(line)
+         do row = 1, self%rows
+            line = to_right(to_text(self%increment(row)), 5)//to_right(to_text(self%load(row)), 13)
+            do k = first, last
+               line = line//' '//zone_numeral(self%contact_state(k, row))
+            end do
+            call page%line(line)
+         end do
+      end do
+   end subroutine print_diagram
 
 end module listing_tables

@@ -16,7 +16,7 @@ module run_documents
    use quantity_types, only: find_quantity, of_interface, quantity_type
    use records, only: uncertainty_type
    use result_rows, only: result_row_type
-   use summary, only: summary_type
+   use summary, only: heat_quantities, heat_units, summary_type
    use text, only: or_blank, to_text
    use unit_labels, only: unit_in_words
    use verification, only: verifier_type
@@ -121,16 +121,12 @@ contains
       type(result_row_type), intent(inout) :: row
       type(summary_type), intent(in) :: summary
       type(model_type), intent(in) :: model
-      character(*), parameter :: names(4) = [character(19) :: 'lowest_temperature', &
-         'highest_temperature', 'heat_in', 'heat_out']
-      character(*), parameter :: units(4) = [character(11) :: 'temperature', 'temperature', &
-         'power', 'power']
       integer :: k
 
       call document%open('{', 'fields')
       if (allocated(summary%heat)) then
-         do k = 1, size(names)
-            call put_plain(trim(names(k)), summary%heat(k), units(k))
+         do k = 1, size(heat_quantities)
+            call put_plain(trim(heat_quantities(k)), summary%heat(k), heat_units(k))
          end do
       end if
       if (allocated(summary%displacement)) call put_plain('largest_displacement', &

@@ -52,7 +52,6 @@ module run_output
       procedure :: fail
       procedure :: finish
       procedure :: break_off
-      procedure :: kept
       procedure :: written
       procedure :: failed_checks
       procedure :: summary_lines
@@ -155,12 +154,12 @@ contains
       if (self%kept_round > 0) then
          call self%progress%clear()
          call self%results%give_up()
-         call self%listing%break_off(reason, record, self%kept())
+         call self%listing%break_off(reason, record, kept(self, self%results%published))
          return
       end if
       if (allocated(record%iterations)) self%failed = record%iterations
       self%judgement%ended_early = .true.
-      call self%listing%end_early(reason, record, words_of_kept(self%results%accepted))
+      call self%listing%end_early(reason, record, kept(self, self%results%accepted))
    end subroutine fail
 
    !> Ends the output: publishes what is left, then closes the listing. `run` then holds the
@@ -297,27 +296,17 @@ contains
    end function written
 
    !> Contents of the files if the run ends here.
-   pure function kept(self) result(words)
+   pure function kept(self, increments) result(words)
       class(run_output_type), intent(in) :: self
-      character(:), allocatable :: words           !! one sentence; empty if nothing
-
-      words = ''
-      if (self%kept_round > 0 .and. self%results%published == 0) then
-         words = 'The results are those of round '//to_text(self%kept_round)// &
-            ', the last whole one.'
-      else if (self%listing%is_begun()) then
-         words = words_of_kept(self%results%published)
-      end if
-   end function kept
-
-   pure function words_of_kept(increments) result(words)
       integer, intent(in) :: increments            ! in the result file
-      character(:), allocatable :: words
+      character(:), allocatable :: words           ! one sentence
 
       words = 'No increment was accepted: this run has no result file and no .sta. If there '// &
          'are any, they are of an earlier run.'
       if (increments > 0) words = 'The results hold the increments up to number '// &
          to_text(increments)//'.'
-   end function words_of_kept
+      if (self%kept_round > 0 .and. increments == 0) words = 'The results are those of round '// &
+         to_text(self%kept_round)//', the last whole one.'
+   end function kept
 
 end module run_output

@@ -25,7 +25,8 @@ module summary
    use unit_labels, only: unit_label
    implicit none
    private
-   public :: summary_type, words_of, place_words, corner_words, largest_at
+   public :: summary_type, words_of, place_words, corner_words, largest_at, heat_quantities, &
+      heat_units
 
    integer, parameter :: most_folds = 8     !! that are listed
    integer, parameter :: most_corners = 3   !! that are named
@@ -44,14 +45,13 @@ module summary
    character(*), parameter :: strain_names(2) = [character(field_width) :: &
       'plastic strain up to', 'creep strain up to']
    integer, parameter :: first_strain = size(maxima) - size(strain_names)   !! before it in maxima
-   character(*), parameter :: heat_names(4) = [character(field_width) :: 'lowest temperature', &
-      'highest temperature', 'heat in', 'heat out']
    !> Volumes that the faces of an interface have lost, that of the slave first
    type(quantity_type), parameter :: worn(2) = pack(contact_table, contact_table%kind == &
       of_interface .and. contact_table%needs == needs_wear)
    character(*), parameter :: worn_faces(2) = [character(6) :: 'slave', 'master']
-   !> As quantities of history that have uncertainties, where they are
-   character(*), parameter :: heat_quantities(4) = [character(8) :: '-', '-', 'heat_in', 'heat_out']
+   !> Extremes of the temperature, and rates of heat, in the order of summary_type
+   character(*), parameter :: heat_quantities(4) = [character(19) :: 'lowest_temperature', &
+      'highest_temperature', 'heat_in', 'heat_out']
    character(*), parameter :: heat_units(4) = [character(11) :: 'temperature', 'temperature', &
       'power', 'power']
 
@@ -60,8 +60,7 @@ module summary
    !> Results of the last accepted increment.
    type :: summary_type
       type(increment_outcome_type) :: last                    !! its number is 0 before the first
-      !> Smallest and largest temperature, heat in and out
-      real(dp), allocatable :: heat(:)
+      real(dp), allocatable :: heat(:)                        !! by heat_quantities
       !> The largest magnitude of a displacement [length]
       real(dp), allocatable :: displacement
       character(:), allocatable, private :: cycle             !! what the last cycle did, or none
@@ -390,12 +389,14 @@ contains
       class(summary_type), intent(in) :: self
       type(model_type), intent(in) :: model
       type(string_type), allocatable, intent(inout) :: lines(:)
+      character(field_width) :: name
       integer :: i
 
       if (allocated(self%heat)) then
-         do i = 1, size(heat_names)
-            call append(lines, summary_line(heat_names(i), self%heat(i), history_words(self, &
-               model, heat_quantities(i)), unit_label(heat_units(i), model%units), ''))
+         do i = 1, size(heat_quantities)
+            name = words_of(heat_quantities(i))
+            call append(lines, summary_line(name, self%heat(i), history_words(self, model, &
+               heat_quantities(i)), unit_label(heat_units(i), model%units), ''))
          end do
       end if
       if (allocated(self%displacement)) call append(lines, summary_line(displacement_name, &

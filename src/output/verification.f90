@@ -139,7 +139,7 @@ contains
       values = [rows]
       call reals(table, 'checks', values)
       call words(table, 'check_reasons', reasons)
-      if (size(values) /= size(rows) .or. .not. table%is_restoring()) return
+      if (size(values) /= size(rows) .or. .not. table%restores) return
       rows = reshape(values, shape(rows))
       first = 1
       do i = 1, size(self%outcomes)
@@ -351,7 +351,7 @@ contains
             levels(i)%course]
       end do
       call reals(table, 'reached', values)
-      if (.not. table%is_restoring()) return
+      if (.not. table%restores) return
       first = 1
       do while (first < size(values))
          i = nint(values(first))

@@ -194,7 +194,7 @@ contains
             call self%simulation%assemble(self%model)
             call self%output%progress%say('reducing')
             if (allocated(self%deck%origin)) then
-               call self%deck%origin%table%begin_restoring()
+               self%deck%origin%table%restores = .true.
                call bring_to(self%model, self%simulation, self%deck%origin%table, error)
             else
                call self%simulation%reduce(self%model, error)

@@ -104,7 +104,7 @@ contains
       call reals(table, 'cycle_force', force)
       call reals(table, 'cycle_history', history)
       simulation%control%step_start = start(1)
-      if (.not. (table%is_restoring() .and. allocated(displacement))) return
+      if (.not. (table%restores .and. allocated(displacement))) return
       simulation%cycle_before = simulation%state
       simulation%cycle_before%displacement = displacement
       simulation%cycle_before%contact%force = force

@@ -46,7 +46,7 @@ PARTS = {
         "listing_increments:print_interface", "listing_tables:print_contact_table",
         "interface_reports", "connections", "contact_points",
         "result_fields:face_values",
-        "result_fields:find_faces", "zone_diagram",
+        "result_fields:find_faces", "listing_tables:add_increment", "listing_tables:print_diagram",
     },
     "friction": {
         "contact_system:next_contact_state", "contact_system:combine", "zone_edges:stick_edges",
