@@ -5,23 +5,7 @@ module print_requests
    use text, only: named_type
    implicit none
    private
-   public :: print_request_type, time_points_type, print_displacement, print_temperature, &
-      print_force, print_heat, print_stress, print_heat_flux, print_position, print_peeq, &
-      print_plastic, print_ceeq, print_creep, print_solid
-
-   ! Quantities of a table, by their key in the deck.
-   integer, parameter :: print_displacement = 1   !! U: displacements of nodes
-   integer, parameter :: print_temperature = 2    !! NT: temperatures of nodes
-   integer, parameter :: print_force = 3          !! RF: external forces on nodes
-   integer, parameter :: print_heat = 4           !! RFL: external heat into nodes
-   integer, parameter :: print_stress = 5         !! S: stresses at integration points
-   integer, parameter :: print_heat_flux = 6      !! HFL: heat fluxes at integration points
-   integer, parameter :: print_peeq = 7           !! PEEQ: equivalent plastic strains there
-   integer, parameter :: print_plastic = 8        !! PE: plastic strains
-   integer, parameter :: print_ceeq = 9           !! CEEQ: equivalent creep strains
-   integer, parameter :: print_creep = 10         !! CE: creep strains
-   integer, parameter :: print_solid = 11         !! SOLID: solid fractions of nodes
-   integer, parameter :: print_position = 12      !! COORD: is in every table
+   public :: print_request_type, time_points_type
 
    !> One *TIME POINTS, instants of output; without times where a card names none.
    type, extends(named_type) :: time_points_type
@@ -36,8 +20,8 @@ module print_requests
       integer :: set = 0                     !! index into the node or element sets; 0: all
       integer :: frequency = 1               !! every n-th increment and the last; 0 never
       type(time_points_type) :: points       !! and at these instants
-      integer, allocatable :: quantities(:)  !! constants above, each once, as on the card
-      logical :: each_node = .true.          !! print_force and print_heat of every node
+      character(5), allocatable :: keys(:)   !! of the quantities, each once, as on the card
+      logical :: each_node = .true.          !! RF and RFL of every node
       logical :: totals = .false.            !! sums of them over the set
       !> What points have along the axes of the section's orientation, vectors along those of the
       !> nodes, else along x and y.

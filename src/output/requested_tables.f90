@@ -4,45 +4,33 @@ module requested_tables
    use, intrinsic :: ieee_arithmetic, only: ieee_is_nan
    use due_output, only: table_is_due
    use equations, only: tabled_nodes
+   use field_quantities, only: field_table, point_values
    use kinds, only: dp
    use model, only: model_type
-   use print_requests, only: print_ceeq, print_creep, print_displacement, print_force, &
-      print_heat, print_heat_flux, print_peeq, print_plastic, print_position, &
-      print_request_type, print_solid, print_stress, print_temperature
+   use print_requests, only: print_request_type
    use quadrature, only: point_count
-   use records, only: element_points_record_type, field_record_type, increment_record_type
+   use quantity_types, only: find_quantity
+   use records, only: field_record_type, increment_record_type
    use transforms, only: axes_at
    implicit none
    private
    public :: requested_table_type, table_column_type, due_tables, tables_of_step
 
-   integer, parameter :: last_quantity = print_solid, most_components = 4
-   integer, parameter :: head_length = 5
-   !> Keys of the quantities on the cards, by the print_* constants.
-   character(*), parameter :: print_keys(last_quantity) = [character(5) :: &
+   integer, parameter :: key_length = 5
+   ! Quantities by their keys on the cards: names in words, and numbers of components.
+   character(*), parameter :: print_keys(11) = [character(key_length) :: &
       'U', 'NT', 'RF', 'RFL', 'S', 'HFL', 'PEEQ', 'PE', 'CEEQ', 'CE', 'SOLID']
-   character(*), parameter :: heads(most_components, last_quantity) = reshape([ &
-      character(head_length) :: 'U1', 'U2', '', '', 'NT', '', '', '', 'RF1', 'RF2', '', '', &
-      'RFL', '', '', '', 'S11', 'S22', 'S33', 'S12', 'HFL1', 'HFL2', '', '', 'PEEQ', '', '', '', &
-      'PE11', 'PE22', 'PE33', 'PE12', 'CEEQ', '', '', '', 'CE11', 'CE22', 'CE33', 'CE12', &
-      'SOLID', '', '', ''], [most_components, last_quantity])
-   ! Their names in words, the axes of their components, and their units.
-   character(*), parameter :: names(last_quantity) = [character(25) :: 'displacement', &
+   character(*), parameter :: names(11) = [character(25) :: 'displacement', &
       'temperature', 'external_force', 'external_heat', 'stress', 'heat_flux', &
       'equivalent_plastic_strain', 'plastic_strain', 'equivalent_creep_strain', 'creep_strain', &
       'solid_fraction']
-   character(*), parameter :: axes_of_vector(most_components) = [character(2) :: 'x', 'y', '', '']
-   character(*), parameter :: axes_of_tensor(most_components) = ['xx', 'yy', 'zz', 'xy']
-   character(*), parameter :: units(last_quantity) = [character(15) :: 'length', 'temperature', &
-      'stress length^2', 'power', 'stress', 'power/length^2', '-', '-', '-', '-', '-']
-   logical, parameter :: is_summed(last_quantity) = [.false., .false., .true., .true., .false., &
-      .false., .false., .false., .false., .false., .false.]
+   integer, parameter :: components(11) = [2, 1, 2, 1, 4, 2, 1, 4, 1, 4, 1]
 
    !> A column of a table: one component of a quantity.
    type :: table_column_type
-      integer :: quantity = 0                  !! a print_* constant
+      character(key_length) :: key = ''        !! of the quantity
       integer :: component = 0
-      character(head_length) :: head = ''      !! in the listing
+      character(key_length) :: head = ''       !! in the listing, the name that *VERIFY has
       character(:), allocatable :: name        !! in words, such as displacement_x
       character(15) :: unit = '-'              !! as of quantity_type
       !> (rows), one of a total; unallocated where the increment does not have the quantity
@@ -72,7 +60,6 @@ contains
       type(model_type), intent(in) :: model
       type(requested_table_type), allocatable, intent(out) :: tables(:)
       logical, allocatable :: nodes_due(:), elements_due(:)
-      real(dp), allocatable :: values(:, :)
       integer :: i, k, n
 
       associate (step => model%steps(record%step))
@@ -99,19 +86,11 @@ contains
             if (.not. elements_due(i)) cycle
             n = n + 1
             tables(n) = table_of_points(step%element_prints(i), model)
-            tables(n)%position = record%element_points(i)%position
-            allocate (tables(n)%absent(0))
-            do k = 1, size(tables(n)%columns)
-               associate (column => tables(n)%columns(k))
-                  values = values_at(record%element_points(i), column%quantity)
-                  if (size(values, 1) > 0) then
-                     column%values = values(column%component, :)
-                  else if (column%component == 1) then
-                     tables(n)%absent = [character(5) :: tables(n)%absent, print_keys( &
-                        column%quantity)]
-                  end if
-               end associate
-            end do
+            associate (points => record%element_points(i), rows => size(tables(n)%member))
+               tables(n)%position = points%position
+               call take_values(points%fields, rows, tables(n)%columns)
+               tables(n)%absent = absent_of(step%element_prints(i)%keys, points%fields, rows)
+            end associate
          end do
       end associate
    end subroutine due_tables
@@ -174,13 +153,12 @@ contains
          end do
       end if
       allocate (table%columns(0), table%totals(0))
-      do i = 1, size(request%quantities)
-         associate (q => request%quantities(i))
-            if (is_summed(q) .and. request%totals) call add_columns(table%totals, 'total_', q, &
-               .false.)
-            if (is_summed(q) .and. .not. request%each_node) cycle
-            call add_columns(table%columns, '', q, is_turned)
-         end associate
+      do i = 1, size(request%keys)
+         if (index(request%keys(i), 'RF') == 1) then
+            if (request%totals) call add_columns(table%totals, 'total_', request%keys(i), .false.)
+            if (.not. request%each_node) cycle
+         end if
+         call add_columns(table%columns, '', request%keys(i), is_turned)
       end do
    end function table_of_nodes
 
@@ -205,40 +183,48 @@ contains
             model%sections(mesh%element_section(table%member))%orientation
       end associate
       allocate (table%columns(0), table%totals(0))
-      do i = 1, size(request%quantities)
-         associate (q => request%quantities(i))
-            ! Positions are in every table.
-            if (q /= print_position) call add_columns(table%columns, '', q, any(table%axes > 0))
-         end associate
+      do i = 1, size(request%keys)
+         call add_columns(table%columns, '', request%keys(i), any(table%axes > 0))
       end do
    end function table_of_points
 
-   !> Adds the columns of the components of a quantity.
-   pure subroutine add_columns(columns, before, quantity, is_turned)
+   !> Adds the columns of the components of a quantity; none of positions, which every table has.
+   pure subroutine add_columns(columns, before, key, is_turned)
       type(table_column_type), allocatable, intent(inout) :: columns(:)
       character(*), intent(in) :: before           ! its name
-      integer, intent(in) :: quantity              ! a print_* constant
+      character(*), intent(in) :: key
       logical, intent(in) :: is_turned             ! whether components are along axes of their own
       type(table_column_type) :: column
       character(2) :: axes
-      integer :: i, k
+      integer :: i, k, q
 
-      do k = 1, count(heads(:, quantity) /= '')
-         column%quantity = quantity
+      q = findloc(print_keys, key, dim=1)
+      if (q == 0) return
+      do k = 1, components(q)
+         axes = axes_of(components(q), k)
+         column%key = key
          column%component = k
-         column%head = heads(k, quantity)
-         column%unit = units(quantity)
-         column%name = before//trim(names(quantity))
-         axes = ''
-         if (any(heads(2:, quantity) /= '')) axes = axes_of_vector(k)
-         if (heads(3, quantity) /= '') axes = axes_of_tensor(k)
-         do i = 1, merge(len_trim(axes), 0, is_turned)
-            axes(i:i) = achar(iachar(axes(i:i)) - iachar('x') + iachar('1'))
+         column%head = trim(key)//axes
+         column%unit = field_table(find_quantity(field_table, column%head))%unit
+         column%name = before//trim(names(q))
+         do i = 1, merge(0, len_trim(axes), is_turned)
+            axes(i:i) = achar(iachar(axes(i:i)) - iachar('1') + iachar('x'))
          end do
          if (axes /= '') column%name = column%name//'_'//trim(axes)
          columns = [columns, column]
       end do
    end subroutine add_columns
+
+   !> The axes of a component of a vector or a tensor by their numbers; blank of a scalar.
+   pure character(2) function axes_of(count, k)
+      integer, intent(in) :: count                 ! of components
+      integer, intent(in) :: k                     ! which
+      character(2), parameter :: of_tensor(4) = ['11', '22', '33', '12']
+
+      axes_of = ''
+      if (count == 2) axes_of = of_tensor(k)(:1)
+      if (count == 4) axes_of = of_tensor(k)
+   end function axes_of
 
    !> Takes nodal values and their sums, or the uncertainties of both.
    subroutine take_fields(request, model, fields, table, of_totals)
@@ -247,38 +233,74 @@ contains
       type(field_record_type), intent(in) :: fields
       type(requested_table_type), intent(inout) :: table
       real(dp), intent(in), optional :: of_totals(3)   ! uncertainties of RF1, RF2, RFL; NaN of none
-      real(dp), allocatable :: values(:, :)
-      integer :: i, k
+      type(field_record_type) :: there
+      integer :: k
 
       table%has_uncertainties = present(of_totals)
       table%position = model%mesh%coordinates(:, table%member)
-      allocate (table%absent(0))
-      do i = 1, size(request%quantities)
-         associate (q => request%quantities(i))
-            values = nodal_values(q, fields, table%member)
-            if (size(values, 1) == 0) table%absent = [character(5) :: table%absent, print_keys(q)]
-            do k = 1, size(table%totals)
-               associate (total => table%totals(k))
-                  if (total%quantity /= q) cycle
-                  if (present(of_totals)) then
-                     total%values = of_totals([merge(3, total%component, q == print_heat)])
-                     if (any(ieee_is_nan(total%values))) deallocate (total%values)
-                  else if (size(values, 1) > 0) then
-                     total%values = [sum(values(total%component, :))]
-                  end if
-               end associate
-            end do
-            if (request%local_axes .and. size(values, 1) == 2) call turn(model, table%member, &
-               present(of_totals), values)
-            do k = 1, size(table%columns)
-               associate (column => table%columns(k))
-                  if (column%quantity == q .and. size(values, 1) > 0) column%values = &
-                     values(column%component, :)
-               end associate
-            end do
+      there = at_nodes(fields, table%member)
+      call take_values(there, size(table%member), table%totals)
+      do k = 1, size(table%totals)
+         associate (total => table%totals(k))
+            if (present(of_totals)) then
+               total%values = of_totals([merge(3, total%component, total%key == 'RFL')])
+               if (any(ieee_is_nan(total%values))) deallocate (total%values)
+            else if (allocated(total%values)) then
+               total%values = [sum(total%values)]
+            end if
          end associate
       end do
+      if (request%local_axes) then
+         call turn(model, table%member, present(of_totals), there%displacement)
+         call turn(model, table%member, present(of_totals), there%reaction)
+      end if
+      call take_values(there, size(table%member), table%columns)
+      table%absent = absent_of(request%keys, there, size(table%member))
    end subroutine take_fields
+
+   !> Fields of some nodes; forces and heat are the external ones.
+   pure function at_nodes(fields, nodes) result(there)
+      type(field_record_type), intent(in) :: fields
+      integer, intent(in) :: nodes(:)
+      type(field_record_type) :: there
+
+      if (allocated(fields%displacement)) there%displacement = fields%displacement(:, nodes)
+      if (allocated(fields%temperature)) there%temperature = fields%temperature(nodes)
+      if (allocated(fields%solid_fraction)) there%solid_fraction = fields%solid_fraction(nodes)
+      if (allocated(fields%external_force)) there%reaction = fields%external_force(:, nodes)
+      if (allocated(fields%external_heat)) there%reaction_heat = fields%external_heat(nodes)
+   end function at_nodes
+
+   !> Takes the values of columns from fields of the rows, where these have them.
+   pure subroutine take_values(fields, rows, columns)
+      type(field_record_type), intent(in) :: fields
+      integer, intent(in) :: rows                      ! their number
+      type(table_column_type), intent(inout) :: columns(:)
+      real(dp), allocatable :: values(:)
+      integer :: i, k
+
+      do k = 1, size(columns)
+         values = point_values(trim(columns(k)%head), fields, [(i, i=1, rows)])
+         if (size(values) == rows) columns(k)%values = values
+      end do
+   end subroutine take_values
+
+   !> Which quantities fields of some rows do not have.
+   pure function absent_of(keys, fields, rows) result(absent)
+      character(*), intent(in) :: keys(:)
+      type(field_record_type), intent(in) :: fields
+      integer, intent(in) :: rows                      ! their number
+      character(key_length), allocatable :: absent(:)
+      integer :: i, k, q
+
+      allocate (absent(0))
+      do k = 1, size(keys)
+         q = findloc(print_keys, keys(k), dim=1)
+         if (q == 0) cycle
+         if (size(point_values(trim(keys(k))//trim(axes_of(components(q), 1)), fields, &
+            [(i, i=1, rows)])) /= rows) absent = [absent, print_keys(q)]
+      end do
+   end function absent_of
 
    !> Replaces the components of vectors by those along the axes of their nodes, and uncertainties
    !> of components by those of these, as of independent ones.
@@ -286,11 +308,11 @@ contains
       type(model_type), intent(in) :: model
       integer, intent(in) :: nodes(:)
       logical, intent(in) :: are_uncertainties
-      real(dp), intent(inout) :: vectors(:, :)    ! (2, nodes)
+      real(dp), allocatable, intent(inout) :: vectors(:, :)    ! (2, nodes) or none
       real(dp) :: axes(2, 2)
       integer :: i, k
 
-      if (.not. allocated(model%transforms)) return
+      if (.not. (allocated(model%transforms) .and. allocated(vectors))) return
       do i = 1, size(model%transforms)
          associate (transform => model%transforms(i))
             do k = 1, size(nodes)
@@ -305,57 +327,5 @@ contains
          end associate
       end do
    end subroutine turn
-
-   !> A nodal quantity: (components, nodes), no component where the step does not have it.
-   pure function nodal_values(quantity, fields, nodes) result(values)
-      integer, intent(in) :: quantity
-      type(field_record_type), intent(in) :: fields
-      integer, intent(in) :: nodes(:)
-      real(dp), allocatable :: values(:, :)
-
-      allocate (values(0, size(nodes)))
-      select case (quantity)
-      case (print_displacement)
-         if (allocated(fields%displacement)) values = fields%displacement(:, nodes)
-      case (print_force)
-         if (allocated(fields%external_force)) values = fields%external_force(:, nodes)
-      case (print_temperature)
-         if (allocated(fields%temperature)) values = reshape(fields%temperature(nodes), &
-            [1, size(nodes)])
-      case (print_heat)
-         if (allocated(fields%external_heat)) values = reshape(fields%external_heat(nodes), &
-            [1, size(nodes)])
-      case (print_solid)
-         if (allocated(fields%solid_fraction)) values = reshape(fields%solid_fraction(nodes), &
-            [1, size(nodes)])
-      case default   ! of integration points
-      end select
-   end function nodal_values
-
-   !> A quantity of integration points: (components, points), no component where the step does not
-   !> have it.
-   pure function values_at(points, quantity) result(values)
-      type(element_points_record_type), intent(in) :: points
-      integer, intent(in) :: quantity
-      real(dp), allocatable :: values(:, :)
-
-      allocate (values(0, size(points%element)))
-      if (quantity == print_stress .and. allocated(points%stress)) values = points%stress
-      if (quantity == print_heat_flux .and. allocated(points%heat_flux)) values = points%heat_flux
-      if (.not. allocated(points%inelastic_strain)) return
-      associate (strain => points%inelastic_strain)
-         select case (quantity)
-         case (print_plastic)
-            values = strain(:4, :)
-         case (print_peeq)
-            values = strain(5:5, :)
-         case (print_creep)
-            values = strain(6:9, :)
-         case (print_ceeq)
-            values = strain(10:, :)
-         case default   ! above
-         end select
-      end associate
-   end function values_at
 
 end module requested_tables

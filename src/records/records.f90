@@ -65,21 +65,6 @@ module records
       real(dp) :: edges_stick(edges_kept) = 0.0_dp     !! alike
    end type contact_record_type
 
-   !> Integration points of the elements of a set (*EL PRINT), along x and y or the axes of the
-   !> section's orientation.
-   type :: element_points_record_type
-      integer, allocatable :: element(:)          !! (points) element index
-      integer, allocatable :: point(:)            !! (points) number of the point in its element
-      real(dp), allocatable :: position(:, :)     !! (2, points) x, y [length]
-      !> (4, points) 11, 22, 33, 12; unallocated before mechanics is solved [stress]
-      real(dp), allocatable :: stress(:, :)
-      !> (2, points) along 1, 2; unallocated without heat [power/length^2]
-      real(dp), allocatable :: heat_flux(:, :)
-      !> (10, points) plastic strain 11, 22, 33, the angle 12 and the equivalent one, then those of
-      !> creep; unallocated without laws [-]
-      real(dp), allocatable :: inelastic_strain(:, :)
-   end type element_points_record_type
-
    !> Fields over the nodes, and over the points where stress and flux are averaged per body and
    !> section.
    type :: field_record_type
@@ -105,6 +90,13 @@ module records
       real(dp), allocatable :: mode_temperature(:)      !! (nodes) the largest 1
       real(dp), allocatable :: mode_displacement(:, :)  !! (2, nodes) [length/temperature]
    end type field_record_type
+
+   !> Integration points of the elements of a set (*EL PRINT), and their stress, heat flux and
+   !> inelastic strains along x and y or the axes of the section's orientation.
+   type :: element_points_record_type
+      real(dp), allocatable :: position(:, :)     !! (2, points) x, y [length]
+      type(field_record_type) :: fields
+   end type element_points_record_type
 
    !> Small motions of a state in time.
    type :: stability_record_type

@@ -382,7 +382,8 @@ contains
       type(point_history_type) :: history
       type(law_points_type) :: response
       real(dp) :: flux(most, 2), strains(most, 10)
-      integer :: first, g, i, last, n
+      integer, allocatable :: elements(:)                       ! (points)
+      integer :: e, first, i, last, n
 
       if (allocated(state%history)) then
          history%before = state%history
@@ -390,68 +391,72 @@ contains
       end if
       associate (mesh => model%mesh, members => request%members(model%mesh%element_sets, &
          size(model%mesh%element_kind)))
-         n = sum(point_count(mesh%element_kind(members)))
-         allocate (record%element(n), record%point(n), record%position(2, n))
-         if (state%has_mechanics) allocate (record%stress(4, n))
-         if (with_heat) allocate (record%heat_flux(2, n))
-         if (allocated(state%history)) allocate (record%inelastic_strain(10, n))
+         elements = [(spread(members(i), 1, point_count(mesh%element_kind(members(i)))), &
+            i=1, size(members))]
+         allocate (record%position(2, size(elements)))
+         if (state%has_mechanics) allocate (record%fields%stress(4, size(elements)))
+         if (with_heat) allocate (record%fields%heat_flux(2, size(elements)))
+         if (allocated(state%history)) allocate (record%fields%inelastic_strain(10, size(elements)))
+         if (state%has_mechanics .and. any(varies(model%materials))) call fields%set_temperature( &
+            mesh, state%stress_temperature, model%initial_temperature)
          last = 0
-         do i = 1, size(members)
-            first = last + 1
-            last = last + point_count(mesh%element_kind(members(i)))
-            record%element(first:last) = members(i)
-            record%point(first:last) = [(g, g=1, last - first + 1)]
-            record%position(:, first:last) = fields%positions(mesh, members(i))
-            if (.not. allocated(state%history)) cycle
-            call fields%take_strains(mesh, members(i), state%history, strains)
-            record%inelastic_strain(:, first:last) = transpose(strains(:last - first + 1, :))
+         do while (last < size(elements))
+            call next_element()
+            record%position(:, first:last) = fields%positions(mesh, e)
+            if (allocated(state%history)) then
+               call fields%take_strains(mesh, e, state%history, strains)
+               record%fields%inelastic_strain(:, first:last) = transpose(strains(:n, :))
+            end if
+            if (.not. state%has_mechanics) cycle
+            call fields%respond(mesh, e, reshape(state%displacement, [2, &
+               size(state%temperature)]), state%stress_temperature - model%initial_temperature, &
+               history, response)
+            record%fields%stress(:, first:last) = transpose(response%stress(:n, :))
          end do
-         if (state%has_mechanics) then
-            if (any(varies(model%materials))) call fields%set_temperature(mesh, &
-               state%stress_temperature, model%initial_temperature)
-            do i = 1, n
-               if (record%point(i) > 1) cycle
-               call fields%respond(mesh, record%element(i), reshape(state%displacement, &
-                  [2, size(state%temperature)]), state%stress_temperature - &
-                  model%initial_temperature, history, response)
-               last = i - 1 + point_count(mesh%element_kind(record%element(i)))
-               record%stress(:, i:last) = transpose(response%stress(:last - i + 1, :))
-            end do
-         end if
-         if (with_heat) then
-            if (any(varies(model%materials))) call fields%set_temperature(mesh, &
-               state%temperature, model%initial_temperature)
-            do i = 1, n
-               if (record%point(i) > 1) cycle
-               call fields%heat_flux(mesh, record%element(i), state%temperature, flux)
-               last = i - 1 + point_count(mesh%element_kind(record%element(i)))
-               record%heat_flux(:, i:last) = transpose(flux(:last - i + 1, :))
-            end do
-         end if
+         if (with_heat .and. any(varies(model%materials))) call fields%set_temperature(mesh, &
+            state%temperature, model%initial_temperature)
+         last = merge(0, size(elements), with_heat)
+         do while (last < size(elements))
+            call next_element()
+            call fields%heat_flux(mesh, e, state%temperature, flux)
+            record%fields%heat_flux(:, first:last) = transpose(flux(:n, :))
+         end do
       end associate
-      if (request%local_axes) call turn(model, record)
+      if (request%local_axes) call turn(model, elements, record)
+   contains
+      !> Goes on to the points of the element behind the last one.
+      subroutine next_element()
+         first = last + 1
+         e = elements(first)
+         n = point_count(model%mesh%element_kind(e))
+         last = last + n
+      end subroutine next_element
    end function points_of_set
 
    !> Replaces the components along x and y by those along the axes of the material.
-   pure subroutine turn(model, record)
+   pure subroutine turn(model, elements, record)
       type(model_type), intent(in) :: model
+      integer, intent(in) :: elements(:)                        ! (points)
       type(element_points_record_type), intent(inout) :: record
       real(dp), parameter :: of_tensor(4) = [1.0_dp, 1.0_dp, 1.0_dp, 0.5_dp]   ! angles are twice it
       real(dp) :: axes(2, 2)
       integer :: first, k
 
-      do k = 1, size(record%element)
-         axes = material_axes(model%orientations, model%sections( &
-            model%mesh%element_section(record%element(k)))%orientation, record%position(:, k))
-         if (allocated(record%stress)) record%stress(:, k) = along_axes(axes, record%stress(:, k))
-         if (allocated(record%heat_flux)) record%heat_flux(:, k) = &
-            matmul(record%heat_flux(:, k), axes)
-         do first = 1, merge(6, 0, allocated(record%inelastic_strain)), 5
-            associate (strain => record%inelastic_strain(first:first + 3, k))
-               strain = along_axes(axes, strain*of_tensor)/of_tensor
-            end associate
+      associate (fields => record%fields)
+         do k = 1, size(elements)
+            axes = material_axes(model%orientations, model%sections( &
+               model%mesh%element_section(elements(k)))%orientation, record%position(:, k))
+            if (allocated(fields%stress)) fields%stress(:, k) = along_axes(axes, &
+               fields%stress(:, k))
+            if (allocated(fields%heat_flux)) fields%heat_flux(:, k) = &
+               matmul(fields%heat_flux(:, k), axes)
+            do first = 1, merge(6, 0, allocated(fields%inelastic_strain)), 5
+               associate (strain => fields%inelastic_strain(first:first + 3, k))
+                  strain = along_axes(axes, strain*of_tensor)/of_tensor
+               end associate
+            end do
          end do
-      end do
+      end associate
    end subroutine turn
 
 end module increment_records

@@ -12,9 +12,7 @@ module deck_builder_controls
    use kinds, only: dp
    use materials, only: melts
    use steps, only: step_controls_type
-   use print_requests, only: print_ceeq, print_creep, print_displacement, print_force, print_heat, &
-      print_heat_flux, print_peeq, print_plastic, print_position, print_request_type, print_solid, &
-      print_stress, print_temperature, time_points_type
+   use print_requests, only: print_request_type, time_points_type
    use spelling, only: known_choices
    use text, only: split_words, string_type, to_text, to_upper
    implicit none
@@ -24,13 +22,9 @@ module deck_builder_controls
 
    real(dp), parameter :: consistent = 1.0e-9_dp   !! sums of coefficients count as equal, relative
 
-   ! Keys of a card: those that are computed, what they are, and those that only CalculiX has.
+   ! Keys of a card: those that are computed, and those that only CalculiX has.
    character(*), parameter :: node_keys = 'U/NT/TS/RF/RFL/SOLID', &
       element_keys = 'S/HFL/COORD/PEEQ/PE/CEEQ/CE'
-   integer, parameter :: node_quantities(6) = [print_displacement, print_temperature, &
-      print_temperature, print_force, print_heat, print_solid]
-   integer, parameter :: element_quantities(7) = [print_stress, print_heat_flux, print_position, &
-      print_peeq, print_plastic, print_ceeq, print_creep]
    character(*), parameter :: foreign_node_keys = &
       '/PN/PS/PT/PSF/PTF/TSF/TTF/TT/V/VF/MF/MACH/CP/DEPF/TURB/'
    character(*), parameter :: foreign_element_keys = &
@@ -225,16 +219,16 @@ contains
       end if
       request%local_axes = choice(deck%card, 'GLOBAL', 'YES/NO', deck, 'NO') == 'NO'
       call read_frequency(deck, request%frequency, request%points)
-      allocate(request%quantities(0))
+      allocate(request%keys(0))
       do j = 1, size(deck%card%data)
          do i = 1, size(deck%card%data(j)%fields)
             if (deck%card%data(j)%has(i)) call take_quantity(deck%card, deck%card%data(j), i, &
-               deck, request%quantities)
+               deck, request%keys)
          end do
       end do
       if (size(deck%card%data) == 0) call deck%note('*'//deck%card%name//' without data prints '// &
          'nothing')
-      if (.not. is_known .or. size(request%quantities) == 0) return
+      if (.not. is_known .or. size(request%keys) == 0) return
       if (.not. allocated(requests)) allocate (requests(0))
       requests = [requests, request]
    end subroutine build_print
@@ -265,35 +259,32 @@ contains
    end subroutine take_set
 
    !> One key: what is not computed, or what nobody knows, is ignored with a warning.
-   subroutine take_quantity(card, data, position, deck, quantities)
+   subroutine take_quantity(card, data, position, deck, keys)
       type(keyword_card_type), intent(in) :: card
       type(data_card_type), intent(in) :: data
       integer, intent(in) :: position
       type(deck_type), intent(inout) :: deck
-      integer, allocatable, intent(inout) :: quantities(:)
+      character(5), allocatable, intent(inout) :: keys(:)
       type(string_type), allocatable :: known(:)
       character(:), allocatable :: foreign, key
-      integer, allocatable :: meanings(:)
       integer :: i
 
       if (card%name == 'NODE PRINT') then
          known = split_words(node_keys)
-         meanings = node_quantities
          foreign = foreign_node_keys
       else
          known = split_words(element_keys)
-         meanings = element_quantities
          foreign = foreign_element_keys
       end if
       key = to_upper(data%text(position))
-      i = findloc([(known(i)%value == key, i=1, size(known))], .true., dim=1)
-      if (i > 0) then
-         if (needed(meanings(i)) /= '') then
+      if (any([(known(i)%value == key, i=1, size(known))])) then
+         if (needed(key) /= '') then
             ! Its card may be one with an error.
             if (.not. deck%has_errors()) call deck%warning(data%place(position), key//' of *'// &
-               card%name//' is not there without *'//needed(meanings(i))//': it is not printed')
-         else if (all(quantities /= meanings(i))) then
-            quantities = [quantities, meanings(i)]
+               card%name//' is not there without *'//needed(key)//': it is not printed')
+         else
+            if (key == 'TS') key = 'NT'
+            if (all(keys /= key)) keys = [character(5) :: keys, key]
          end if
       else if (index(foreign, '/'//key//'/') > 0) then
          call deck%warning(data%place(position), key//' of *'//card%name//' is not '// &
@@ -304,18 +295,18 @@ contains
       end if
    contains
       !> The card without which no material has a quantity; empty where one has it.
-      pure function needed(quantity)
-         integer, intent(in) :: quantity
+      pure function needed(key)
+         character(*), intent(in) :: key
          character(:), allocatable :: needed
 
          needed = ''
          associate (law => deck%model%materials%law)
-            select case (quantity)
-            case (print_peeq, print_plastic)
+            select case (key)
+            case ('PEEQ', 'PE')
                if (.not. any(law%strains(1) > 0)) needed = 'PLASTIC'
-            case (print_ceeq, print_creep)
+            case ('CEEQ', 'CE')
                if (.not. any(law%strains(2) > 0)) needed = 'CREEP'
-            case (print_solid)
+            case ('SOLID')
                if (.not. any(melts(deck%model%materials))) needed = 'LATENT HEAT'
             case default   ! of all materials
             end select
