@@ -8,11 +8,10 @@ module result_tables
    use increment_quantities, only: part_values, history_value, pass_value
    use kinds, only: dp
    use mesh, only: mesh_type
-   use quantity_types, only: of_bodies, of_history, of_motions, of_references, of_sections, &
-      quantity_type
-   use records, only: contact_record_type, increment_record_type, uncertainty_type
+   use quantity_types, only: of_bodies, of_contact_points, of_history, of_interface, of_motions, &
+      of_passes, of_references, of_sections, quantity_type
+   use records, only: increment_record_type, uncertainty_type
    use reported_quantities, only: geometry
-   use solution_report, only: iteration_record_type
    implicit none
    private
    public :: result_table_type, with_uncertainty, write_geometry, write_rigid_surfaces
@@ -29,8 +28,8 @@ module result_tables
    contains
       procedure :: start => start_table
       procedure :: rows
-      generic :: append => append_increment, append_passes, append_contact, append_uncertainties
-      procedure, private :: append_increment, append_passes, append_contact, append_uncertainties
+      generic :: append => append_increment, append_uncertainties
+      procedure, private :: append_increment, append_uncertainties
    end type result_table_type
 
 contains
@@ -60,44 +59,30 @@ contains
       if (size(self%sets) > 0) rows = self%sets(1)%rows()
    end function rows
 
-   !> Adds an increment.
-   subroutine append_increment(self, record)
-      class(result_table_type), intent(inout) :: self !! `/history`, or the times of `/uncertainty`
+   !> Adds what an increment has: the passes of the fixed point in `/convergence`.
+   subroutine append_increment(self, record, i)
+      class(result_table_type), intent(inout) :: self
       type(increment_record_type), intent(in) :: record
-      integer :: i
+      integer, intent(in), optional :: i                  !! interface of `/contact/<name>`
+      real(dp), allocatable :: values(:)
+      integer :: k
 
-      do i = 1, size(self%sets)
-         if (any(self%quantities(i)%kind == [of_bodies, of_sections, of_references, &
-            of_motions])) then
-            call self%sets(i)%append(part_values(self%quantities(i), record))
-         else
-            call self%sets(i)%append([history_value(self%quantities(i)%name, record)])
-         end if
+      do k = 1, size(self%sets)
+         associate (quantity => self%quantities(k))
+            select case (quantity%kind)
+            case (of_passes)
+               values = pass_value(quantity%name, record%iterations)
+            case (of_contact_points, of_interface)
+               values = contact_values(quantity%name, record%contacts(i))
+            case (of_bodies, of_sections, of_references, of_motions)
+               values = part_values(quantity, record)
+            case default
+               values = [history_value(quantity%name, record)]
+            end select
+         end associate
+         call self%sets(k)%append(values)
       end do
    end subroutine append_increment
-
-   !> Adds passes of the fixed point.
-   subroutine append_passes(self, iterations)
-      class(result_table_type), intent(inout) :: self          !! `/convergence`
-      type(iteration_record_type), intent(in) :: iterations(:) !! passes, in their order
-      integer :: i
-
-      if (size(iterations) == 0) return
-      do i = 1, size(self%sets)
-         call self%sets(i)%append(pass_value(self%quantities(i)%name, iterations))
-      end do
-   end subroutine append_passes
-
-   !> Adds the contact points of an increment.
-   subroutine append_contact(self, contact)
-      class(result_table_type), intent(inout) :: self     !! `/contact/<name>`
-      type(contact_record_type), intent(in) :: contact    !! state of the interface
-      integer :: i
-
-      do i = 1, size(self%sets)
-         call self%sets(i)%append(contact_values(self%quantities(i)%name, contact))
-      end do
-   end subroutine append_contact
 
    !> Adds the uncertainties of an interface, a body or the increment.
    subroutine append_uncertainties(self, errors)

@@ -39,7 +39,6 @@ module results
    use result_fields, only: cell_sets, contact_grid_type, field_results_type, interface_sets, &
       node_sets
    use run_summaries, only: run_summary_type, write_run
-   use solution_report, only: iteration_record_type
    use state_tables, only: integers, state_table_type
    use status_files, only: status_file_type
    use steps, only: dof_temperature, planned_increments, solves_heat, solves_mechanics
@@ -87,6 +86,7 @@ module results
       procedure :: open => open_results
       procedure :: go_on
       procedure :: append
+      procedure :: take_passes
       procedure :: finish
       procedure :: give_up
       procedure :: set_aside
@@ -275,12 +275,9 @@ contains
       call self%tables(history)%append(record)
       call self%increments%add_increment(record)
       if (allocated(record%stability)) call self%tables(stability)%append(record)
-      if (allocated(record%iterations)) then
-         call self%tables(convergence)%append(record%iterations)
-         call self%passes%add_iterations(record%iterations)
-      end if
+      call self%take_passes(record)
       do i = 1, size(interfaces)
-         call self%tables(3 + i)%append(record%contacts(i))
+         call self%tables(3 + i)%append(record, i)
       end do
       if (self%has_contact) call self%contact_grid%append(record)
       if (allocated(record%uncertainties)) then
@@ -316,21 +313,28 @@ contains
       if (allocated(error)) call self%give_up()
    end subroutine append
 
+   !> Adds the passes of an increment, of one that failed, too.
+   subroutine take_passes(self, record)
+      class(results_type), intent(inout) :: self          !! the writer
+      type(increment_record_type), intent(in) :: record
+
+      if (.not. allocated(record%iterations)) return
+      if (size(record%iterations) > 0) call self%tables(convergence)%append(record)
+      call self%passes%add_iterations(record%iterations)
+   end subroutine take_passes
+
    !> Publishes what is left and ends HDF5. Without any accepted increment the files of an earlier
    !> run stay, but for `.cvg`, which then holds the iterations that failed.
    !> Error: status_internal, when a file cannot be written.
-   subroutine finish(self, model, interfaces, run, accuracy, failed, error)
+   subroutine finish(self, model, interfaces, run, accuracy, error)
       class(results_type), intent(inout) :: self          !! the writer
       type(model_type), intent(in) :: model
       type(contact_points_type), intent(in) :: interfaces(:) !! contact points of every interface
       type(run_summary_type), intent(in) :: run           !! the whole run
       type(accuracy_rounds_type), intent(in) :: accuracy
-      type(iteration_record_type), intent(in) :: failed(:) !! passes of the increment that failed
       type(error_type), allocatable, intent(out) :: error !! what went wrong
 
       if (self%is_broken) return
-      call self%tables(convergence)%append(failed)
-      call self%passes%add_iterations(failed)
       if (self%accepted > 0) then
          call publish(self, model, interfaces, run, error, accuracy)
       else

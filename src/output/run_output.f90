@@ -23,7 +23,6 @@ module run_output
    use run_documents, only: put_checks, put_summary
    use run_summaries, only: put_run, run_summary_type
    use clock, only: wall_seconds
-   use solution_report, only: iteration_record_type
    use state_tables, only: state_table_type
    use text, only: append, counted, or_blank, string_type, to_text
    use verification, only: failure_words, verifier_type
@@ -42,7 +41,6 @@ module run_output
       type(progress_type), public :: progress                  !! progress line
       type(run_judgement_type), public :: judgement                    !! what the whole run shows
       integer, public :: kept_round = 0                        !! round in the files; 0 for none
-      type(iteration_record_type), allocatable :: failed(:)    !! passes of an increment that failed
       integer, allocatable :: point_node(:)                    !! (points) node index of each point
       logical :: is_finished = .false.                         !! whether it came to its end
    contains
@@ -93,7 +91,6 @@ contains
 
       since = wall_seconds()
       self%point_node = point_node
-      allocate(self%failed(0))
       call self%verifier%start(model)
       call self%listing%open(self%kept_round > 0, model, interfaces, self%run, error)
       if (allocated(error)) return
@@ -157,7 +154,7 @@ contains
          call self%listing%break_off(reason, record, kept(self, self%results%published))
          return
       end if
-      if (allocated(record%iterations)) self%failed = record%iterations
+      call self%results%take_passes(record)
       self%judgement%ended_early = .true.
       call self%listing%end_early(reason, record, kept(self, self%results%accepted))
    end subroutine fail
@@ -185,7 +182,7 @@ contains
          self%run%verify_failed > 0, interfaces, model)
       self%run%is_finished = .not. self%judgement%ended_early .and. &
          self%run%accuracy%later_round == 0
-      call self%results%finish(model, interfaces, self%run, accuracy, self%failed, error)
+      call self%results%finish(model, interfaces, self%run, accuracy, error)
       if (allocated(error)) then
          call self%break_off(error%message)
          return

@@ -5,12 +5,11 @@ module increment_records
    use conductance_laws, only: conductance, conductance_law_type
    use contact_operator, only: touches
    use contact_points, only: contact_points_type
-   use contact_system, only: contact_open, contact_slip, contact_stick
+   use contact_system, only: contact_open, contact_slip, contact_state_type, contact_stick
    use contact_tractions, only: in_contact, no_gap, pressures, shears
    use discretisation_errors, only: recovery_type
    use due_output, only: needs_recovery, table_is_due
    use equations, only: section_nodes
-   use friction_laws, only: friction_law_type
    use heat_equation, only: heat_across
    use increment_data, only: increment_data_type
    use kinds, only: dp
@@ -218,9 +217,7 @@ contains
                bodies%laws%friction(first:last)%coefficient > 0.0_dp)
             record%gap = 0.0_dp
          end where
-         call measure_contact(points, bodies%laws%friction(first), closed, &
-            contact%force(first:last), contact%shear_force(first:last), overlaps(bodies, &
-            contact%force, first, last), record)
+         call measure_contact(bodies, points, contact, first, closed, record)
          record%movement = contact%tangential(first:last)
          record%slip = record%movement - contact%slip_origin(first:last)
       end associate
@@ -304,51 +301,46 @@ contains
             call bodies%view(i, points)
             contacts(i)%contact_state = contact%contact_state(first:last)
             contacts(i)%gap = contact%gap(first:last)
-            call measure_contact(points, bodies%laws%friction(first), contacts(i)%contact_state /= &
-               contact_open, contact%force(first:last), contact%shear_force(first:last), overlaps( &
-               bodies, contact%force, first, last), contacts(i))
+            call measure_contact(bodies, points, contact, first, contacts(i)%contact_state /= &
+               contact_open, contacts(i))
             contacts(i)%heat_rate = sum(heat_across(points%weight, &
                state%flux_conductance(first:last), state%jump(first:last)))
          end do
       end associate
    end subroutine contacts_of_state
 
-   !> How far the faces of an interface would overlap if their nodes yielded alone.
-   pure function overlaps(bodies, force, first, last) result(overlap)
-      type(reduced_bodies_type), intent(in) :: bodies
-      real(dp), intent(in) :: force(:)                     ! (m) of all interfaces
-      integer, intent(in) :: first, last                   ! contact points of the interface
-      real(dp) :: overlap(first:last)                      ! [length]
-
-      overlap = 0.0_dp
-      if (.not. allocated(bodies%equilibrium%contact%nodal_stiffness)) return
-      associate (own => force(first:last), &
-         stiffness => bodies%equilibrium%contact%nodal_stiffness(first:last))
-         where (own > 0.0_dp .and. stiffness > 0.0_dp) overlap = own/stiffness
-      end associate
-   end function overlaps
-
    !> Tractions, sums and edges of an interface from its nodal forces.
-   pure subroutine measure_contact(points, friction, closed, force, shear_force, overlap, record)
+   pure subroutine measure_contact(bodies, points, contact, first, closed, record)
+      type(reduced_bodies_type), intent(in) :: bodies
       type(contact_points_type), intent(in) :: points      ! the contact points of the interface
-      type(friction_law_type), intent(in) :: friction      ! the law of all of them
-      logical, intent(in) :: closed(:)                    ! (m) contact points that have a traction
-      real(dp), intent(in) :: force(:)                     ! (m) 0 at the others [force]
-      real(dp), intent(in) :: shear_force(:)               ! (m) on the slave [force]
-      real(dp), intent(in) :: overlap(:)                   ! (m) of nodes that yield alone [length]
+      type(contact_state_type), intent(in) :: contact      ! of all interfaces
+      integer, intent(in) :: first                         ! its first contact point
+      logical, intent(in) :: closed(:)                     ! (m) contact points that have a traction
       type(contact_record_type), intent(inout) :: record   ! has states and gaps
       type(contact_profile_type) :: profile
+      real(dp) :: overlap(size(closed))                    ! if its nodes yielded alone [length]
 
-      record%pressure = pressures(points, force, closed)
-      record%shear = shears(points, shear_force, closed, friction, record%pressure)
-      record%normal_force = sum(force)
-      record%shear_force = sum(shear_force)
-      if (abs(record%shear_force) <= no_shear*sum(abs(force) + &
-         abs(shear_force))) record%shear_force = 0.0_dp
-      profile = contact_profile(points, record%contact_state, record%pressure, record%shear, &
-         record%gap - overlap)
-      call contact_edges(profile, record%edges_contact, record%edge_contact)
-      call stick_edges(profile, friction, record%edges_stick, record%edge_stick)
+      associate (last => first + size(closed) - 1, friction => bodies%laws%friction(first), &
+         forces => contact%force(first:first + size(closed) - 1), &
+         shear_forces => contact%shear_force(first:first + size(closed) - 1))
+         record%pressure = pressures(points, forces, closed)
+         record%shear = shears(points, shear_forces, closed, friction, record%pressure)
+         record%normal_force = sum(forces)
+         record%shear_force = sum(shear_forces)
+         if (abs(record%shear_force) <= no_shear*sum(abs(forces) + abs(shear_forces))) then
+            record%shear_force = 0.0_dp
+         end if
+         overlap = 0.0_dp
+         if (allocated(bodies%equilibrium%contact%nodal_stiffness)) then
+            associate (stiffness => bodies%equilibrium%contact%nodal_stiffness(first:last))
+               where (forces > 0.0_dp .and. stiffness > 0.0_dp) overlap = forces/stiffness
+            end associate
+         end if
+         profile = contact_profile(points, record%contact_state, record%pressure, record%shear, &
+            record%gap - overlap)
+         call contact_edges(profile, record%edges_contact, record%edge_contact)
+         call stick_edges(profile, friction, record%edges_stick, record%edge_stick)
+      end associate
    end subroutine measure_contact
 
    !> One record for each *EL PRINT of a step; empty where its table is not due.
