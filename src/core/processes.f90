@@ -5,6 +5,7 @@ module processes
       c_long, c_null_char, c_ptr, c_size_t, c_sizeof
    use, intrinsic :: iso_fortran_env, only: error_unit
    use errors, only: error_type, set_error, status_internal
+   use open_files, only: close_descriptor
    use text, only: to_text
    implicit none
    private
@@ -111,12 +112,6 @@ module processes
          integer(c_size_t), value :: bytes
       end function c_share
 
-      !> POSIX close(2).
-      integer(c_int) function c_close(file) bind(c, name='close')
-         import :: c_int
-         integer(c_int), value :: file
-      end function c_close
-
       !> POSIX _exit(2): what the parent had open stays as it is.
       subroutine c_exit_at_once(status) bind(c, name='_exit')
          import :: c_int
@@ -218,11 +213,10 @@ contains
 
    !> Drops what a child said.
    subroutine drop_files(self)
-      class(child_type), intent(inout) :: self
-      integer(c_int) :: ignored
+      class(child_type), intent(in) :: self
 
-      ignored = c_close(self%messages)
-      ignored = c_close(self%reports)
+      call close_descriptor(int(self%messages))
+      call close_descriptor(int(self%reports))
    end subroutine drop_files
 
    !> Says in words how a child came to an end that it did not report.

@@ -4,13 +4,13 @@
 !> The reader keeps its first error, and reads nothing after it: its user checks once, at the end.
 module hdf5_reader
    use, intrinsic :: iso_c_binding, only: c_associated, c_char, c_f_pointer, c_loc, c_ptr, c_size_t
-   use errors, only: error_type, set_error, status_deck
+   use errors, only: error_type, status_deck
    use file_calls, only: c_free, check_seal
    use hdf5, only: h5aclose_f, h5aexists_f, h5aopen_f, h5aread_f, h5dclose_f, h5dget_space_f, &
-      h5dopen_f, h5dread_f, h5f_acc_rdonly_f, h5fclose_f, h5fopen_f, h5lexists_f, h5oclose_f, &
+      h5dopen_f, h5dread_f, h5f_acc_rdonly_f, h5fclose_f, h5fopen_f, h5oclose_f, &
       h5oopen_f, h5s_select_set_f, h5sclose_f, h5screate_simple_f, h5sget_simple_extent_dims_f, &
       h5sselect_hyperslab_f, h5t_native_double, h5tclose_f, hid_t, hsize_t
-   use hdf5_writer, only: make_text_type
+   use hdf5_writer, only: hdf5_file_type, make_text_type
    use kinds, only: dp
    use text, only: string_type
    implicit none
@@ -18,15 +18,10 @@ module hdf5_reader
    public :: hdf5_reader_type
 
    !> An open file.
-   type :: hdf5_reader_type
-      private
-      integer(hid_t) :: id = -1
-      character(:), allocatable :: path
-      type(error_type), allocatable :: error   !! the first one
+   type, extends(hdf5_file_type) :: hdf5_reader_type
    contains
       procedure :: open => open_file
       procedure :: close => close_file
-      procedure :: has
       procedure :: reals
       procedure :: strings
       procedure :: number
@@ -49,12 +44,13 @@ contains
       character(*), intent(in) :: path
       integer :: status
 
-      self%path = path
+      self%error_status = status_deck
+      self%before = 'the result "'//path//'" cannot be read: '
       call check_seal(path, self%error)
       if (allocated(self%error)) return
       call h5fopen_f(path, h5f_acc_rdonly_f, self%id, status)
       if (status < 0) self%id = -1
-      call note(self, [status], 'it is no result file of thercon')
+      call self%note([status], 'it is no result file of thercon')
    end subroutine open_file
 
    !> Closes it.
@@ -68,28 +64,6 @@ contains
       self%id = -1
       call move_alloc(self%error, error)
    end subroutine close_file
-
-   subroutine note(self, status, fault)
-      class(hdf5_reader_type), intent(inout) :: self
-      integer, intent(in) :: status(:)
-      character(*), intent(in) :: fault
-
-      if (allocated(self%error) .or. all(status >= 0)) return
-      call set_error(self%error, status_deck, 'the result "'//self%path//'" cannot be read: '// &
-         fault)
-   end subroutine note
-
-   !> Whether there is a group or dataset; its group exists.
-   logical function has(self, path)
-      class(hdf5_reader_type), intent(inout) :: self
-      character(*), intent(in) :: path
-      integer :: status
-
-      has = .false.
-      if (allocated(self%error)) return
-      call h5lexists_f(self%id, path, has, status)
-      call note(self, [status], 'it has no '//path)
-   end function has
 
    !> Numbers of a dataset, rows one behind the other: all of them, or some rows of one without
    !> columns.
@@ -107,7 +81,7 @@ contains
       if (allocated(self%error)) return
       status = 0
       call h5dopen_f(self%id, path, dataset, status(1))
-      call note(self, status, 'it has no '//path)
+      call self%note(status, 'it has no '//path)
       if (allocated(self%error)) return
       call h5dget_space_f(dataset, space, status(1))
       extents = 1
@@ -128,7 +102,7 @@ contains
       call h5sclose_f(memory, status(5))
       call h5sclose_f(space, status(5))
       call h5dclose_f(dataset, status(5))
-      call note(self, status, path//' is damaged')
+      call self%note(status, path//' is damaged')
    end subroutine reals
 
    !> Strings of a dataset.
@@ -146,7 +120,7 @@ contains
       if (allocated(self%error)) return
       status = 0
       call h5dopen_f(self%id, path, dataset, status(1))
-      call note(self, status, 'it has no '//path)
+      call self%note(status, 'it has no '//path)
       if (allocated(self%error)) return
       call h5dget_space_f(dataset, space, status(1))
       call h5sget_simple_extent_dims_f(space, extents, largest, rank)
@@ -161,7 +135,7 @@ contains
       call h5tclose_f(type, status(4))
       call h5sclose_f(space, status(4))
       call h5dclose_f(dataset, status(4))
-      call note(self, status, path//' is damaged')
+      call self%note(status, path//' is damaged')
    end subroutine strings
 
    !> A number that is an attribute; 0 where it is not there.
@@ -214,7 +188,7 @@ contains
          call h5aclose_f(attribute, status(3))
       end if
       call h5oclose_f(object, status(1))
-      call note(self, status, path//'@'//name//' is damaged')
+      call self%note(status, path//'@'//name//' is damaged')
    end subroutine read_attribute
 
    !> A string that HDF5 has allocated, which is freed.

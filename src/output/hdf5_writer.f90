@@ -17,11 +17,11 @@ module hdf5_writer
       h5kind_to_type, h5_integer_kind, h5t_std_i32le, h5t_std_i64le, h5t_std_u8le, h5t_ieee_f64le
    use kinds, only: dp, long
    use model, only: unit_labels_type
-   use text, only: string_type
+   use text, only: or_blank, string_type
    use unit_labels, only: unit_in_words
    implicit none
    private
-   public :: hdf5_writer_type, start_hdf5, end_hdf5, make_text_type
+   public :: hdf5_file_type, hdf5_writer_type, start_hdf5, end_hdf5, make_text_type
    public :: stored_type, as_real, as_integer, as_long, as_byte
 
    integer, parameter :: as_real = 1      !! stored as 64-bit real
@@ -32,22 +32,29 @@ module hdf5_writer
    integer(hsize_t), parameter :: conversion_bytes = 16384_hsize_t
    integer, parameter :: longest_name = 1024   !! of a member of a group
 
-   !> A file that is being written.
-   type :: hdf5_writer_type
+   !> A file, written or read.
+   type :: hdf5_file_type
       integer(hid_t) :: id = -1                          !! HDF5's handle while the file is open
+      type(error_type), allocatable :: error             !! the first one since it was opened
+      integer :: error_status = status_internal          !! of its errors
+      character(:), allocatable :: before                !! their words; unallocated for none
+   contains
+      procedure :: note
+      procedure :: has
+   end type hdf5_file_type
+
+   !> A file that is being written.
+   type, extends(hdf5_file_type) :: hdf5_writer_type
       integer(hid_t) :: creation = -1                    !! properties of datasets, likewise
       integer(hid_t) :: transfer = -1                    !! properties of writing them, likewise
       integer(hid_t), private :: text = -1               !! type of text, likewise
-      type(error_type), allocatable :: error             !! the first one since it was opened
       type(unit_labels_type) :: labels                   !! units of the deck
    contains
       procedure :: create => create_file
       procedure :: open => open_file
       procedure :: close => close_file
-      procedure :: note
       procedure :: create_group
       procedure :: link => link_dataset
-      procedure :: has
       procedure :: remove
       procedure :: keep_members
       procedure :: write => write_strings
@@ -147,14 +154,15 @@ contains
       call move_alloc(self%error, error)
    end subroutine close_file
 
-   !> Keeps an error of status_internal where a call of HDF5 failed.
+   !> Keeps an error where a call of HDF5 failed.
    subroutine note(self, status, message)
-      class(hdf5_writer_type), intent(inout) :: self
+      class(hdf5_file_type), intent(inout) :: self
       integer, intent(in) :: status(:)                    !! returned by the calls
       character(*), intent(in) :: message                 !! what failed, in plain words
 
       if (allocated(self%error)) return
-      if (any(status < 0)) call set_error(self%error, status_internal, message)
+      if (any(status < 0)) call set_error(self%error, self%error_status, &
+         or_blank(self%before)//message)
    end subroutine note
 
    !> Creates a group; its parent exists.
@@ -172,7 +180,7 @@ contains
 
    !> Whether there is a group or dataset; its group exists.
    logical function has(self, path)
-      class(hdf5_writer_type), intent(inout) :: self
+      class(hdf5_file_type), intent(inout) :: self
       character(*), intent(in) :: path
       integer :: status
 

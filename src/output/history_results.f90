@@ -187,28 +187,18 @@ contains
       type(requested_table_type), intent(in) :: tables(:)
       logical, intent(in) :: counts(:)                       ! whether a table is of the set
       real(dp), allocatable :: values(:)
+      type(table_column_type), allocatable :: columns(:)
       integer :: i, k
 
+      allocate (values(0))
       do i = 1, size(tables)
          if (.not. counts(i)) cycle
-         do k = 1, size(tables(i)%columns)
-            call take(tables(i)%columns(k), values)
-         end do
-         do k = 1, size(tables(i)%totals)
-            call take(tables(i)%totals(k), values)
+         columns = [tables(i)%columns, tables(i)%totals]
+         do k = 1, size(columns)
+            if (allocated(columns(k)%values) .and. columns(k)%name == name) values = &
+               columns(k)%values
          end do
       end do
-      if (.not. allocated(values)) allocate (values(0))
-
-   contains
-
-      pure subroutine take(column, values)
-         type(table_column_type), intent(in) :: column
-         real(dp), allocatable, intent(inout) :: values(:)
-
-         if (allocated(column%values) .and. column%name == name) values = column%values
-      end subroutine take
-
    end function values_of
 
    !> Rows of each set so far.

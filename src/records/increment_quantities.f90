@@ -141,6 +141,7 @@ contains
 
       passes = 0
       if (allocated(record%iterations)) passes = size(record%iterations)
+      value = ieee_value(value, ieee_quiet_nan)
       select case (name)
       case ('time')
          value = record%time
@@ -156,7 +157,6 @@ contains
       case ('residual_floor')
          value = record%residual_floor
       case ('ALLSE', 'ALLPD', 'ALLCD', 'ALLFD', 'ALLWK')
-         value = ieee_value(value, ieee_quiet_nan)
          if (allocated(record%energies)) value = record%energies(findloc(['SE', 'PD', 'CD', 'FD', &
             'WK'], name(4:5), dim=1))
       case ('heat_in')
@@ -170,7 +170,6 @@ contains
       case ('heat_friction')
          value = record%heat_friction
       case ('solid_time')
-         value = ieee_value(value, ieee_quiet_nan)
          if (allocated(record%solid_time)) value = record%solid_time
       case ('heat_imbalance')
          value = record%heat_imbalance
@@ -187,14 +186,12 @@ contains
       case ('unstable_modes', 'certain', 'growth_rate', 'period')
          value = stability_value(name, record)
       case ('load_factor')
-         value = ieee_value(value, ieee_quiet_nan)
          if (allocated(record%load_factor)) value = record%load_factor
       case ('fold')
          value = merge(1.0_dp, 0.0_dp, record%is_fold)
       case ('unstable')
          value = merge(1.0_dp, 0.0_dp, record%is_unstable)
-      case default
-         value = ieee_value(value, ieee_quiet_nan)
+      case default   ! not known
       end select
    end function history_value
 

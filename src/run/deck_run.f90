@@ -64,9 +64,8 @@ contains
       type(adaptive_rounds_type) :: rounds
       type(deck_run_type) :: self
       type(error_type), allocatable :: error
-      real(dp) :: since
 
-      since = wall_seconds()
+      self%since = wall_seconds()
       self%path = path
       self%command = command
       self%deck => deck
@@ -74,8 +73,7 @@ contains
       outcome%path = path
       allocate (outcome%failed_checks(0))
       call reserve_blas_memory()
-      self%since = since
-      if (command%limit > 0.0_dp) self%deadline = since + command%limit
+      if (command%limit > 0.0_dp) self%deadline = self%since + command%limit
       rounds%deadline = self%deadline
       do
          call rounds%begin_round()
@@ -87,7 +85,7 @@ contains
          call outcome%fail(error)
       end if
       if (allocated(deck%finished)) return
-      outcome%report%seconds = wall_seconds() - since
+      outcome%report%seconds = wall_seconds() - self%since
       if (allocated(deck%origin)) outcome%report%seconds = outcome%report%seconds + &
          sum(deck%origin%seconds)
    end subroutine run_deck
