@@ -344,9 +344,9 @@ contains
             if (present(forces)) then
                rhs = 0.0_dp
                rhs(:size(own%inside), 1) = forces(own%inside)
-               call own%solver%recover(rhs, on_tail, solution)
+               call own%solver%recover(on_tail, solution, rhs)
             else
-               call own%solver%extend(on_tail, solution)
+               call own%solver%recover(on_tail, solution)
             end if
             values(own%inside) = solution(:size(own%inside), 1)
             deallocate (rhs, solution)

@@ -242,7 +242,8 @@ contains
       class(linear_solver_type), allocatable :: direct
       type(gradient_solver_type), allocatable :: gradients
 
-      if (solver_kind == solver_mumps .and. .not. allocated(problem%division%piece)) then
+      if (solver_kind == solver_mumps .and. problem%map%equations > problem%map%tail .and. .not. &
+         allocated(problem%division%piece)) then
          allocate (mumps_solver_type :: direct)
       else
          allocate (skyline_solver_type :: direct)
@@ -456,7 +457,7 @@ contains
             welded = problem%map%expand(first)
             rest(:, 1) = load%rhs(:, 1) - problem%map%restrict(problem%matrix%multiply(welded) + &
                self%added%multiply(welded))
-            call self%solver%recover(rest, condensed, solution)
+            call self%solver%recover(condensed, solution, rest)
             welded = problem%map%expand(first + solution(:, 1), load%given)
          end associate
          return
@@ -507,8 +508,8 @@ contains
       real(dp) :: solution(problem%map%equations, 1)
 
       solution(:, 1) = [load%rhs(:problem%map%equations - size(on_tail), 1), on_tail]
-      if (.not. problem%division%is_tail()) call self%solver%recover(load%rhs, reshape(on_tail, &
-         [size(on_tail), 1]), solution)
+      if (.not. problem%division%is_tail()) call self%solver%recover(reshape(on_tail, &
+         [size(on_tail), 1]), solution, load%rhs)
       values = problem%map%expand(solution(:, 1), load%given)
    end function recover_kept
 
@@ -540,7 +541,7 @@ contains
       if (problem%division%is_tail()) then
          solution = on_tail
       else
-         call self%solver%extend(on_tail, solution)
+         call self%solver%recover(on_tail, solution)
       end if
       do k = 1, size(on_tail, 2)
          values(:, k) = problem%map%expand(solution(:, k))

@@ -189,6 +189,9 @@ contains
       if (allocated(self%jump_load)) deallocate (self%jump_load)
       self%is_balanced = .false.
       if (model%solver /= solver_mumps .or. allocated(bodies%mechanical%division%piece)) return
+      associate (heat => bodies%thermal%map, motion => bodies%mechanical%map)
+         if (heat%equations + motion%equations == heat%tail + motion%tail) return
+      end associate
       if (.not. self%is_of(bodies%thermal, film)) then
          call self%release()
          self%values = bodies%thermal%values

@@ -10,6 +10,7 @@
 !>
 !> at constant z. It is a part of the derivative of the contact operator too.
 module contact_heat
+   use column_panels, only: crout_flops
    use conductance_graph, only: conductance_graph_type
    use conductance_laws, only: conductance
    use dense, only: lu_type, product_of
@@ -22,7 +23,6 @@ module contact_heat
    use increment_data, only: increment_data_type, increment_workspace_type
    use kinds, only: dp
    use reduced_bodies, only: reduced_bodies_type
-   use tail_factors, only: tail_flops
    use temperature_laws, only: temperature_derivatives
    use text, only: to_text
    implicit none
@@ -87,8 +87,10 @@ contains
          call tail%refactor(heat%schur, diagonal)
          work%columns_again = work%columns_again + size(x) + 1 - tail%first_changed
          work%columns_full = work%columns_full + bodies%thermal%map%equations
-         work%flops_again = work%flops_again + tail_flops(tail%first_row, tail%first_changed)
-         work%flops_full = work%flops_full + heat%full_flops() + tail_flops(tail%first_row, 1)
+         associate (first_row => tail%first_row, n => size(x))
+            work%flops_again = work%flops_again + crout_flops(first_row, n, tail%first_changed)
+            work%flops_full = work%flops_full + heat%full_flops() + crout_flops(first_row, n, 1)
+         end associate
          if (allocated(workspace%edge%point)) then
             call solve_with_edge(bodies, data%heat%given, diagonal, workspace, x, of_edge)
          else

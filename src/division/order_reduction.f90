@@ -21,39 +21,36 @@ contains
    !> curved sides of the deck.
    pure subroutine reduce_order(model)
       type(model_type), intent(inout) :: model   !! with its loads, without partners of nodes
-      integer :: corners(2, size(model%mesh%node_number)), new_index(size( &
-         model%mesh%node_number)), i, n
+      integer :: corners(2, size(model%mesh%node_number)), i, n
+      integer :: new_index(0:size(model%mesh%node_number))   ! 0 for what drops out, and for none
+      logical :: stays(size(model%mesh%node_number))
 
       corners = side_corners(model%mesh)
-      n = 0
-      new_index = 0
-      do i = 1, size(new_index)
-         if (corners(1, i) > 0) cycle
-         n = n + 1
-         new_index(i) = n
-      end do
+      stays = corners(1, :) == 0
+      new_index(0) = 0
+      new_index(1:) = unpack([(n, n=1, count(stays))], stays, 0)
       call make_explicit(model)
       call share_loads(corners, new_index, model%requests%loads)
       call drop_requests(new_index, model%requests%supports)
       call drop_requests(new_index, model%requests%temperatures)
       do i = 1, size(model%fields)
-         model%fields(i)%values = pack(model%fields(i)%values, new_index > 0)
-         model%fields(i)%given = pack(model%fields(i)%given, new_index > 0)
+         model%fields(i)%values = pack(model%fields(i)%values, stays)
+         model%fields(i)%given = pack(model%fields(i)%given, stays)
       end do
-      model%initial_temperature = pack(model%initial_temperature, new_index > 0)
+      model%initial_temperature = pack(model%initial_temperature, stays)
       do i = 1, model%deck_equations
-         call model%equations(i)%replace(corners, new_index)
+         call model%equations(i)%replace(corners, new_index(1:))
       end do
       do i = 1, size(model%bars)
-         call model%bars(i)%elongation%replace(corners, new_index)
-         if (allocated(model%bars(i)%mean%node)) call model%bars(i)%mean%replace(corners, new_index)
+         call model%bars(i)%elongation%replace(corners, new_index(1:))
+         if (allocated(model%bars(i)%mean%node)) call model%bars(i)%mean%replace(corners, &
+            new_index(1:))
       end do
       model%couplings%reference = new_index(model%couplings%reference)
       do i = 1, size(model%couplings)
          associate (coupling => model%couplings(i))
-            if (coupling%rotation > 0) coupling%rotation = new_index(coupling%rotation)
-            if (coupling%rotation_node > 0) coupling%rotation_node = &
-               new_index(coupling%rotation_node)
+            coupling%rotation = new_index(coupling%rotation)
+            coupling%rotation_node = new_index(coupling%rotation_node)
             if (allocated(coupling%nodes)) coupling%nodes = pack(new_index(coupling%nodes), &
                new_index(coupling%nodes) > 0)
          end associate
@@ -61,16 +58,14 @@ contains
       do i = 1, size(model%mesh%surfaces)
          if (.not. allocated(model%mesh%surfaces(i)%drawing)) cycle
          associate (line => model%mesh%surfaces(i)%drawing)
-            if (line%reference > 0) line%reference = new_index(line%reference)
-            if (line%rotation > 0) line%rotation = new_index(line%rotation)
+            line%reference = new_index(line%reference)
+            line%rotation = new_index(line%rotation)
          end associate
       end do
       do i = 1, size(model%sections)
-         associate (section => model%sections(i))
-            if (section%reference(1) > 0) section%reference = new_index(section%reference)
-         end associate
+         model%sections(i)%reference = new_index(model%sections(i)%reference)
       end do
-      if (model%load_node > 0) model%load_node = new_index(model%load_node)
+      model%load_node = new_index(model%load_node)
       call reduce_mesh(new_index, model%mesh)
       model%element_order = 1
    end subroutine reduce_order
@@ -100,20 +95,18 @@ contains
    end function side_corners
 
    pure subroutine reduce_mesh(new_index, mesh)
-      integer, intent(in) :: new_index(:)   ! (nodes) zero for those that drop out
+      integer, intent(in) :: new_index(0:)  ! (nodes) zero for those that drop out
       type(mesh_type), intent(inout) :: mesh
-      real(dp), allocatable :: coordinates(:, :)
       integer :: e, i, corners
+      integer, allocatable :: kept(:)
 
       do i = 1, size(mesh%node_sets)
          mesh%node_sets(i)%members = new_index(mesh%node_sets(i)%members)
          mesh%node_sets(i)%members = pack(mesh%node_sets(i)%members, mesh%node_sets(i)%members > 0)
       end do
-      allocate(coordinates(2, count(new_index > 0)))
-      coordinates(1, :) = pack(mesh%coordinates(1, :), new_index > 0)
-      coordinates(2, :) = pack(mesh%coordinates(2, :), new_index > 0)
-      call move_alloc(coordinates, mesh%coordinates)
-      mesh%node_number = pack(mesh%node_number, new_index > 0)
+      kept = pack([(i, i=1, ubound(new_index, 1))], new_index(1:) > 0)
+      mesh%coordinates = mesh%coordinates(:, kept)
+      mesh%node_number = mesh%node_number(kept)
       do e = 1, size(mesh%element_number)
          corners = element_corner_count(mesh%element_kind(e))
          mesh%element_nodes(:corners, e) = new_index(mesh%element_nodes(:corners, e))
@@ -121,17 +114,14 @@ contains
       end do
       mesh%element_kind = linear_kind(mesh%element_kind)
       do i = 1, hanging_count(mesh)
-         do e = 1, 5
-            if (mesh%hanging_sides(e, i) > 0) mesh%hanging_sides(e, i) = &
-               new_index(mesh%hanging_sides(e, i))
-         end do
+         mesh%hanging_sides(:, i) = new_index(mesh%hanging_sides(:, i))
       end do
       call place_hanging(mesh)
    end subroutine reduce_mesh
 
    !> Drops what is given for single nodes that drop out.
    pure subroutine drop_requests(new_index, list)
-      integer, intent(in) :: new_index(:)    ! (nodes) zero for those that drop out
+      integer, intent(in) :: new_index(0:)   ! (nodes) zero for those that drop out
       type(request_list_type), intent(inout) :: list
       type(request_list_type) :: kept
       integer :: i
@@ -150,7 +140,7 @@ contains
    !> there replaces it.
    pure subroutine share_loads(corners, new_index, loads)
       integer, intent(in) :: corners(:, :)   ! (2, nodes) as of side_corners
-      integer, intent(in) :: new_index(:)    ! (nodes) zero for those that drop out
+      integer, intent(in) :: new_index(0:)   ! (nodes) zero for those that drop out
       type(request_list_type), intent(inout) :: loads
       type(request_list_type) :: shared
       type(request_type) :: share

@@ -24,8 +24,8 @@ module field_recovery
    implicit none
    private
    public :: point_map_type, make_points, recovery_rules, stress_samples, &
-      heat_flux_samples, add_averages, average_samples, fit_of_points, element_error_type, measure_stress, &
-      measure_heat_flux, error_rules, error_record_type, squared_errors
+      heat_flux_samples, add_averages, average_samples, fit_of_points, element_error_type, &
+      measure_stress, measure_heat_flux, error_rules, error_record_type, squared_errors
 
    !> Relative error of a body below which its fields are smooth but for rounding.
    real(dp), parameter :: smooth = 1.0e-8_dp
@@ -177,8 +177,8 @@ contains
       end function bilinear
    end function fit_of_points
 
-   !> Adds the weights of the recovery points in averages at some points: values extrapolated in each
-   !> element to its nodes.
+   !> Adds the weights of the recovery points in averages at some points: values extrapolated in
+   !> each element to its nodes.
    pure subroutine add_averages(mesh, points, is_wanted, sums)
       type(mesh_type), intent(in) :: mesh
       type(point_map_type), intent(in) :: points

@@ -10,7 +10,7 @@ module column_panels
    use kinds, only: dp, long
    implicit none
    private
-   public :: column_panels_type
+   public :: column_panels_type, crout_flops
 
    !> Columns that a panel may have: products are fastest with multiples of 16.
    integer, parameter :: widths(8) = [64, 48, 32, 16, 8, 4, 2, 1]
@@ -91,6 +91,22 @@ contains
          end associate
       end do
    end function panel_width
+
+   !> Operations of Crout's method by columns, from one of them on.
+   pure integer(long) function crout_flops(first_row, pivots, from) result(flops)
+      integer, intent(in) :: first_row(:)   !! (columns) first row of each column
+      integer, intent(in) :: pivots         !! columns that are eliminated
+      integer, intent(in) :: from           !! first column
+      integer :: i, j
+
+      flops = 0
+      do j = from, size(first_row)
+         do i = first_row(j) + 1, j - 1
+            flops = flops + 2*max(min(i, pivots + 1) - max(first_row(i), first_row(j)), 0)
+         end do
+         flops = flops + 3*max(min(j - 1, pivots) - first_row(j) + 1, 0)
+      end do
+   end function crout_flops
 
    !> Position of an entry of a panel in value.
    pure integer(long) function place(self, p, i, j)

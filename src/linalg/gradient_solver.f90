@@ -39,7 +39,6 @@ module gradient_solver
       procedure :: factor
       procedure :: condense
       procedure :: recover
-      procedure :: extend
       procedure :: release
    end type gradient_solver_type
 
@@ -233,16 +232,18 @@ contains
    end subroutine condense
 
    !> As recover_interface of linear_solver says.
-   subroutine recover(self, rhs, on_tail, solution)
+   subroutine recover(self, on_tail, solution, rhs)
       class(gradient_solver_type), intent(in) :: self
-      real(dp), intent(in) :: rhs(:, :)
       real(dp), intent(in) :: on_tail(:, :)
       real(dp), intent(out) :: solution(:, :)
+      real(dp), intent(in), optional :: rhs(:, :)
 
-      if (self%iterates) then
+      if (.not. self%iterates) then
+         call self%direct%recover(on_tail, solution, rhs)
+      else if (present(rhs)) then
          call solve(self, tolerance, rhs, solution)
       else
-         call self%direct%recover(rhs, on_tail, solution)
+         solution = 0.0_dp
       end if
    end subroutine recover
 
@@ -260,16 +261,6 @@ contains
          call iterate(self, most_steps, part, solution(:, k), is_solved)
       end do
    end subroutine solve
-
-   !> As extend_interface of linear_solver says.
-   subroutine extend(self, on_tail, solution)
-      class(gradient_solver_type), intent(in) :: self
-      real(dp), intent(in) :: on_tail(:, :)
-      real(dp), intent(out) :: solution(:, :)
-
-      solution = 0.0_dp
-      if (.not. self%iterates) call self%direct%extend(on_tail, solution)
-   end subroutine extend
 
    !> As release_interface of linear_solver says.
    subroutine release(self)

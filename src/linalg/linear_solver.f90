@@ -13,7 +13,7 @@ module linear_solver
    private
    public :: linear_solver_type, check_pattern
 
-   !> A direct solver and its latest factors, which condense, recover and extend leave as they are.
+   !> A direct solver and its latest factors, which condense and recover leave as they are.
    type, abstract :: linear_solver_type
       integer :: order = 0               !! unknowns
       integer :: tail = 0                !! tail unknowns, the last ones
@@ -34,7 +34,6 @@ module linear_solver
       procedure(factor_interface), deferred :: factor
       procedure(condense_interface), deferred :: condense
       procedure(recover_interface), deferred :: recover
-      procedure(extend_interface), deferred :: extend
       procedure(release_interface), deferred :: release
    end type linear_solver_type
 
@@ -74,22 +73,14 @@ module linear_solver
       end subroutine condense_interface
 
       !> Solutions in full from the solution on the tail: K_lead x_lead = f_lead - K_lead,tail
-      !> x_tail.
-      subroutine recover_interface(self, rhs, on_tail, solution)
+      !> x_tail. Without right-hand sides a back substitution alone.
+      subroutine recover_interface(self, on_tail, solution, rhs)
          import :: linear_solver_type, dp
          class(linear_solver_type), intent(in) :: self
-         real(dp), intent(in) :: rhs(:, :) !! (order, columns); tail rows are not used
          real(dp), intent(in) :: on_tail(:, :)              !! (tail, columns)
          real(dp), intent(out) :: solution(:, :)            !! (order, columns)
+         real(dp), intent(in), optional :: rhs(:, :) !! (order, columns); tail rows are not used
       end subroutine recover_interface
-
-      !> Solutions without right-hand side on the leading rows: a back substitution alone.
-      subroutine extend_interface(self, on_tail, solution)
-         import :: linear_solver_type, dp
-         class(linear_solver_type), intent(in) :: self
-         real(dp), intent(in) :: on_tail(:, :)              !! (tail, columns)
-         real(dp), intent(out) :: solution(:, :)            !! (order, columns)
-      end subroutine extend_interface
 
       !> Frees the factors and the analysis.
       subroutine release_interface(self)

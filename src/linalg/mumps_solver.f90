@@ -2,8 +2,7 @@
 !>
 !> Debian's MUMPS is built without METIS, so METIS's order is computed here and handed over as
 !> PERM_IN. MUMPS factors the leading block and returns its Schur complement; the tail is factored
-!> by Crout, as in the skyline solver. MUMPS refuses a matrix without leading unknowns, which is its
-!> own Schur complement.
+!> by Crout, as in the skyline solver. MUMPS refuses a matrix without leading unknowns.
 module mumps_solver
    use errors, only: error_type, set_error, status_deck, status_internal
    use interruption, only: c_end_without_memory
@@ -45,7 +44,6 @@ module mumps_solver
       procedure :: factor
       procedure :: condense
       procedure :: recover
-      procedure :: extend
       procedure :: release
    end type mumps_solver_type
 
@@ -88,7 +86,7 @@ contains
       call factor_values(self, error)
       ! Solutions need the factors alone.
       deallocate (self%mumps%irn, self%mumps%jcn, self%mumps%a)
-      if (allocated(error) .or. self%order == self%tail) return
+      if (allocated(error)) return
       self%full_flops = int(self%mumps%rinfog(3), long)
       ! RINFOG(19) is of the matrix as MUMPS has scaled it, rows and columns to about 1.
       if (self%mumps%rinfog(19) > 0.0_dp) self%smallest_pivot = min(1.0_dp, self%mumps%rinfog(19))
@@ -138,7 +136,6 @@ contains
       type(error_type), allocatable, intent(out) :: error
       integer :: i
 
-      if (self%order == self%tail) return
       self%mumps%nnz = size(self%mumps%irn, kind=long)
       allocate (self%mumps%perm_in(self%order))
       self%mumps%perm_in(:) = positions_by_rank(rank, self%order)
@@ -166,10 +163,6 @@ contains
 
       tail = self%tail
       if (allocated(self%schur)) deallocate (self%schur)
-      if (self%order == tail) then
-         call take_whole_matrix(self)
-         return
-      end if
       if (.not. associated(self%mumps%schur)) allocate (self%mumps%schur(tail**2))
       self%mumps%job = job_factor
       do attempt = 1, workspace_tries
@@ -191,20 +184,6 @@ contains
       end do
       deallocate (self%mumps%schur)
    end subroutine factor_values
-
-   !> The Schur complement of a matrix that is all tail.
-   subroutine take_whole_matrix(self)
-      type(mumps_solver_type), intent(inout) :: self
-      integer :: k
-
-      allocate (self%schur(self%tail, self%tail), source=0.0_dp)
-      associate (schur => self%schur, i => self%mumps%irn, j => self%mumps%jcn)
-         do k = 1, size(i)
-            schur(i(k), j(k)) = schur(i(k), j(k)) + self%mumps%a(k)
-            schur(j(k), i(k)) = schur(i(k), j(k))
-         end do
-      end associate
-   end subroutine take_whole_matrix
 
    !> Version of MUMPS.
    function mumps_version() result(version)
@@ -305,25 +284,15 @@ contains
    end subroutine condense
 
    !> As recover_interface of linear_solver says.
-   subroutine recover(self, rhs, on_tail, solution)
+   subroutine recover(self, on_tail, solution, rhs)
       class(mumps_solver_type), intent(in) :: self
-      real(dp), intent(in) :: rhs(:, :)
       real(dp), intent(in) :: on_tail(:, :)
       real(dp), intent(out) :: solution(:, :)
+      real(dp), intent(in), optional :: rhs(:, :)
 
-      call eliminate(self, size(rhs, 2), rhs)
+      call eliminate(self, size(on_tail, 2), rhs)
       call substitute(self, on_tail, solution)
    end subroutine recover
-
-   !> As extend_interface of linear_solver says.
-   subroutine extend(self, on_tail, solution)
-      class(mumps_solver_type), intent(in) :: self
-      real(dp), intent(in) :: on_tail(:, :)
-      real(dp), intent(out) :: solution(:, :)
-
-      call eliminate(self, size(on_tail, 2))
-      call substitute(self, on_tail, solution)
-   end subroutine extend
 
    !> Eliminates right-hand sides forward, or none. Without a tail the substitution does both.
    subroutine eliminate(self, columns, rhs)
@@ -343,10 +312,6 @@ contains
             id%rhs(:) = 0.0_dp
          end if
          if (self%tail == 0) return
-         if (self%order == self%tail) then
-            id%redrhs(:) = id%rhs
-            return
-         end if
          ! MUMPS skips what a sparse right-hand side does not reach: all of the leading rows.
          id%icntl(20) = merge(0, rhs_is_sparse, present(rhs))
          id%irhs_ptr(:) = [1, (2, k=1, columns)]
@@ -368,11 +333,7 @@ contains
             id%redrhs(self%tail*(k - 1) + 1:self%tail*k) = on_tail(:, k)
          end do
          if (self%tail > 0) id%icntl(26) = 2
-         if (self%order == self%tail) then
-            id%rhs(:) = id%redrhs
-         else
-            call call_mumps(id)
-         end if
+         call call_mumps(id)
          do k = 1, size(solution, 2)
             solution(:, k) = id%rhs(id%n*(k - 1) + 1:id%n*k)
          end do

@@ -5,6 +5,7 @@ module ordering
    use, intrinsic :: iso_c_binding, only: c_int
    use errors, only: error_type, set_error, status_internal
    use kinds, only: dp
+   use sorting, only: sort_order
    use sparse_matrix, only: sparse_matrix_type, triplet_list_type
    implicit none
    private
@@ -129,7 +130,7 @@ contains
       integer, intent(in) :: first
       integer :: vertex
       integer :: level(graph%row_count), order(graph%row_count)
-      integer :: depth, reached, candidate
+      integer :: depth
 
       vertex = first
       depth = 0
@@ -138,9 +139,7 @@ contains
          call breadth_first(graph, vertex, level, order)
          if (maxval(level) <= depth) exit
          depth = maxval(level)
-         reached = count(level /= 0)
-         candidate = order(reached)
-         vertex = candidate
+         vertex = order(count(level /= 0))
       end do
    end function pseudo_peripheral
 
@@ -166,33 +165,11 @@ contains
             tail = tail + 1
             order(tail) = neighbour
          end do
-         call sort_by_degree(graph, order(front + 1:tail))
+         associate (beside => order(front + 1:tail))
+            beside = beside(sort_order(graph%row_start(beside + 1) - graph%row_start(beside)))
+         end associate
       end do
    end subroutine breadth_first
-
-   !> Insertion sort of a short list by degree.
-   pure subroutine sort_by_degree(graph, list)
-      type(sparse_matrix_type), intent(in) :: graph
-      integer, intent(inout) :: list(:)
-      integer :: i, j, vertex
-
-      do i = 2, size(list)
-         vertex = list(i)
-         j = i - 1
-         do while (j >= 1)
-            if (degree(list(j)) <= degree(vertex)) exit
-            list(j + 1) = list(j)
-            j = j - 1
-         end do
-         list(j + 1) = vertex
-      end do
-   contains
-      pure integer function degree(i)
-         integer, intent(in) :: i
-
-         degree = graph%row_start(i + 1) - graph%row_start(i)
-      end function degree
-   end subroutine sort_by_degree
 
    !> Fill-reducing position of each vertex of a graph. METIS's default options fix its random seed.
    !> Error: METIS fails, and there are no positions.

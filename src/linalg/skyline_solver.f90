@@ -5,7 +5,7 @@
 !> Columns are stored from their first non-zero row on, in panels that share it (column_panels),
 !> those of the tail to the last leading row.
 module skyline_solver
-   use column_panels, only: column_panels_type
+   use column_panels, only: column_panels_type, crout_flops
    use errors, only: error_type, set_error, status_deck
    use kinds, only: dp, long
    use linear_solver, only: check_pattern, linear_solver_type
@@ -28,7 +28,6 @@ module skyline_solver
       procedure :: factor
       procedure :: condense
       procedure :: recover
-      procedure :: extend
       procedure :: release
    end type skyline_solver_type
 
@@ -57,7 +56,7 @@ contains
       self%position = positions_by_rank(rank, self%order)
       first_row = min(first_rows(lower, self%position), leading + 1)
       call self%columns%set_profile(first_row, leading)
-      self%full_flops = crout_flops(first_row, leading)
+      self%full_flops = crout_flops(first_row, leading, 1)
       self%factor_bytes = storage_size(1.0_dp)/8*(size(self%columns%value, kind=long) + &
          int(tail, long)*(tail + 1)/2)
    end subroutine analyse
@@ -141,25 +140,6 @@ contains
       end do
    end subroutine set_values
 
-   !> Operations of Crout's method by columns.
-   pure function crout_flops(first_row, leading) result(flops)
-      integer, intent(in) :: first_row(:), leading
-      integer(long) :: flops
-      integer :: high, i, j
-
-      flops = 0
-      do j = 1, size(first_row)
-         high = min(j - 1, leading)
-         do i = first_row(j) + 1, high
-            flops = flops + 2*max(i - max(first_row(i), first_row(j)), 0)
-         end do
-         do i = leading + 1, j - 1
-            flops = flops + 2*max(leading + 1 - max(first_row(i), first_row(j)), 0)
-         end do
-         flops = flops + 3*max(high - first_row(j) + 1, 0)
-      end do
-   end function crout_flops
-
    !> As condense_interface of linear_solver says.
    subroutine condense(self, rhs, condensed, welded)
       class(skyline_solver_type), intent(in) :: self
@@ -179,34 +159,24 @@ contains
    end subroutine condense
 
    !> As recover_interface of linear_solver says.
-   subroutine recover(self, rhs, on_tail, solution)
+   subroutine recover(self, on_tail, solution, rhs)
       class(skyline_solver_type), intent(in) :: self
-      real(dp), intent(in) :: rhs(:, :)
       real(dp), intent(in) :: on_tail(:, :)
       real(dp), intent(out) :: solution(:, :)
+      real(dp), intent(in), optional :: rhs(:, :)
       real(dp), allocatable :: x(:, :)
 
-      allocate (x, mold=rhs)
-      x(self%position, :) = rhs
-      call self%columns%eliminate(self%order, size(x, 2), x)
+      allocate (x, mold=solution)
+      if (present(rhs)) then
+         x(self%position, :) = rhs
+         call self%columns%eliminate(self%order, size(x, 2), x)
+      else
+         x(:self%order - self%tail, :) = 0.0_dp
+      end if
       x(self%order - self%tail + 1:, :) = on_tail
       call self%columns%substitute(self%order, size(x, 2), x)
       solution = x(self%position, :)
    end subroutine recover
-
-   !> As extend_interface of linear_solver says.
-   subroutine extend(self, on_tail, solution)
-      class(skyline_solver_type), intent(in) :: self
-      real(dp), intent(in) :: on_tail(:, :)
-      real(dp), intent(out) :: solution(:, :)
-      real(dp), allocatable :: x(:, :)
-
-      allocate (x, mold=solution)
-      x(:self%order - self%tail, :) = 0.0_dp
-      x(self%order - self%tail + 1:, :) = on_tail
-      call self%columns%substitute(self%order, size(x, 2), x)
-      solution = x(self%position, :)
-   end subroutine extend
 
    !> As release_interface of linear_solver says.
    subroutine release(self)

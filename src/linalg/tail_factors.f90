@@ -14,7 +14,7 @@ module tail_factors
    use tail_matrix, only: tail_matrix_type
    implicit none
    private
-   public :: tail_factors_type, tail_flops
+   public :: tail_factors_type
 
    real(dp), parameter :: any_pivot = -1.0_dp   !! the tail may be indefinite: no pivot is refused
 
@@ -89,22 +89,6 @@ contains
          columns%value(last) = columns%value(last) + self%diagonal(unknown)
       end associate
    end subroutine set_column
-
-   !> Operations of factoring the columns of a tail from one on.
-   pure function tail_flops(first_row, first_changed) result(flops)
-      integer, intent(in) :: first_row(:)      !! (tail) of each column
-      integer, intent(in) :: first_changed     !! first one that is factored
-      integer(long) :: flops                   !! floating-point operations
-      integer :: i, j
-
-      flops = 0
-      do j = first_changed, size(first_row)
-         do i = first_row(j) + 1, j - 1
-            flops = flops + 2*max(i - max(first_row(i), first_row(j)), 0)
-         end do
-         flops = flops + 3*(j - first_row(j))
-      end do
-   end function tail_flops
 
    !> Adds V W V^T until the tail is factored again.
    pure subroutine add_sums(self, sums, conductance)

@@ -4,7 +4,7 @@
 module tail_matrix
    use dense, only: product_of
    use kinds, only: dp
-   use ordering, only: profile => first_rows, profile_order
+   use ordering, only: positions_by_rank, profile => first_rows, profile_order
    use sparse_matrix, only: sparse_matrix_type
    implicit none
    private
@@ -52,7 +52,7 @@ contains
       class(tail_matrix_type), intent(in) :: self
       integer, intent(in) :: position(:)
       integer :: rank(size(position))
-      integer :: at(3*size(position)), i, n, turn
+      integer :: i, n, turn
       logical :: is_placed(size(position))
 
       rank = 3*position - 2
@@ -70,20 +70,7 @@ contains
          rank = abs(rank)
       end do
       ! Several may be behind the same one.
-      at = 0
-      do i = 1, self%order
-         at(rank(i)) = at(rank(i)) + 1
-      end do
-      n = 1
-      do i = 1, size(at)
-         n = n + at(i)
-         at(i) = n - at(i)
-      end do
-      do i = 1, self%order
-         n = at(rank(i))
-         at(rank(i)) = n + 1
-         rank(i) = n
-      end do
+      rank = positions_by_rank(rank, self%order)
    end function behind_others
 
    !> First row of each column in this order.
