@@ -25,8 +25,7 @@ module variations
    use text, only: append, to_text
    implicit none
    private
-   public :: variation_type, marked_elements_type, vary, apply_variation, varied_increment
-   public :: as_written
+   public :: variation_type, marked_elements_type, vary, apply_variation, as_written
 
    integer, parameter :: as_written = -1   !! what the deck says holds
 
@@ -118,8 +117,7 @@ contains
             if (variation%tolerance > 0.0_dp) step%fixed_point%tolerance = variation%tolerance
             if (allocated(variation%scheme) .and. solves_heat(step%analysis)) step%scheme = &
                variation%scheme
-            step%first_increment = varied_increment(step%first_increment, step%period, &
-               variation%increments)
+            step%first_increment = min(step%first_increment*variation%increments, step%period)
             step%smallest_increment = min(step%smallest_increment, step%first_increment)
             step%largest_increment = max(step%largest_increment, step%first_increment)
             step%local_error = step%local_error*variation%increments**2
@@ -252,15 +250,5 @@ contains
          end do
       end associate
    end subroutine lower_order
-
-   !> An increment that a factor makes longer or shorter; none is longer than its step.
-   elemental function varied_increment(first, period, factor) result(increment)
-      real(dp), intent(in) :: first    !! first increment as written [time]
-      real(dp), intent(in) :: period   !! length of the step [time]
-      real(dp), intent(in) :: factor   !! factor on its size
-      real(dp) :: increment            !! the size that it has then [time]
-
-      increment = min(first*factor, period)
-   end function varied_increment
 
 end module variations

@@ -2,7 +2,6 @@
 !> the contact unknowns. Their heat is reduced for given films, by each run for itself
 !> (heat_reduction).
 module reduced_bodies
-   use bar_matrices, only: bar_stiffness, bar_thermal_load
    use field_constraints, only: constrain_displacements, constrain_temperatures
    use connections, only: connections_type, contact_laws_type, join_points, laws_of_step, &
       match_surfaces, match_tie
@@ -19,14 +18,15 @@ module reduced_bodies
    use model, only: has_sparse_tail, model_type
    use held_points, only: held_directions
    use point_materials, only: point_materials_type
-   use point_rules, only: integration_rules
+   use quadrature, only: integration_rules
    use rigid_motions, only: joint_type, joints_of, unsupported_motions
    use linear_constraints, only: linear_constraints_type
    use mesh, only: mesh_type, nodes_per_element
    use sparse_matrix, only: linear_combination, sparse_matrix_type, triplet_list_type
    use steps, only: load_temperature, solves_heat, solves_mechanics
    use sum_lists, only: sum_list_type
-   use stiffness_matrix, only: assemble_stiffness, assemble_thermal_load
+   use stiffness_matrix, only: assemble_stiffness, assemble_thermal_load, bar_stiffness, &
+      bar_thermal_load
    use thermal_matrix, only: assemble_capacity, assemble_conduction
    implicit none
    private

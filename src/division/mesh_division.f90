@@ -11,7 +11,7 @@ module mesh_division
    use sparse_matrix, only: sparse_matrix_type
    implicit none
    private
-   public :: division_type, divide, hanging_after, side_node, inner_node, child_element
+   public :: division_type, divide, hanging_after, side_node, child_element
    public :: refined_members
 
    !> New nodes inside an element by its kind.
@@ -35,7 +35,10 @@ module mesh_division
       !> (2, sides) nodes between the ends of each side, from its first end on: new ones, or old
       !> ones that hang there; 0 where there are none, the second one also on a side of two nodes
       integer, allocatable :: between(:, :)
-      integer, allocatable :: inner_start(:)        !! (elements) index before the first node inside
+      !> (elements) index before the nodes inside: of a quadrilateral 1 at the centre, 1 + f half
+      !> way to side f; of a triangle with six nodes i half way between the midside nodes near
+      !> corner i
+      integer, allocatable :: inner_start(:)
       integer, allocatable :: rank(:) !! (elements) how many are divided up to each, 0 if it is not
       !> (nodes_after, nodes) of the old nodes in the values at all nodes; columns in any order
       type(sparse_matrix_type) :: weights
@@ -160,16 +163,6 @@ contains
       end associate
    end function side_node
 
-   !> Index of a new node inside an element: of a quadrilateral 1 at the centre, 1 + f half way to
-   !> side f; of a triangle with six nodes i half way between the midside nodes near corner i.
-   pure integer function inner_node(division, element, position)
-      type(division_type), intent(in) :: division
-      integer, intent(in) :: element                !! the element
-      integer, intent(in) :: position               !! 1..inner_count
-
-      inner_node = division%inner_start(element) + position
-   end function inner_node
-
    !> Index of a child of a divided element: the first takes its parent's place.
    pure integer function child_element(division, parent, child)
       type(division_type), intent(in) :: division
@@ -214,7 +207,7 @@ contains
                do i = 1, inner_count(kind)
                   point = in_square(:, i)
                   if (kind == triangle6) point = in_triangle(:, i)
-                  call set_row(weights, inner_node(division, e, i), &
+                  call set_row(weights, division%inner_start(e) + i, &
                      mesh%element_nodes(:element_node_count(kind), e), element_shape(kind, point))
                end do
             end associate

@@ -7,7 +7,7 @@ module refinement
    use kinds, only: dp, long
    use load_application, only: apply_requests, apply_transforms
    use mesh, only: mesh_type
-   use mesh_division, only: child_element, divide, division_type, hanging_after, inner_node, &
+   use mesh_division, only: child_element, divide, division_type, hanging_after, &
       refined_members, side_node
    use model, only: model_type
    use text, only: to_text
@@ -249,7 +249,7 @@ contains
       ! A side of two nodes has one new node, its middle.
       if (element_node_count(kind) == corners) own(corners + 1:2*corners) = &
          own(2*corners + 1:3*corners)
-      own(4*corners + 1:) = [(inner_node(division, e, i), i=1, size(own) - 4*corners)]
+      own(4*corners + 1:) = division%inner_start(e) + [(i, i=1, size(own) - 4*corners)]
       children = 0
       associate (n => element_node_count(kind))
          if (corners == 4) children(:n, :) = reshape(own([quad_children(:n, :)]), [n, 4])

@@ -23,8 +23,7 @@ module element_elasticity
    use materials, only: section_type
    use mesh, only: mesh_type
    use point_gradients, only: strain_along_z
-   use point_rules, only: point_rule_type
-   use quadrature, only: integration_rule, point_count
+   use quadrature, only: integration_rule, point_count, point_rule_type
    use shape_functions, only: element_gradients, element_shape
    implicit none
    private

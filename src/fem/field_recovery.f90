@@ -15,10 +15,9 @@ module field_recovery
    use kinds, only: dp
    use mesh, only: mesh_type, nodes_per_element
    use material_points, only: material_points_type
-   use point_rules, only: integration_rules, load_rules, most => most_points_of_rule, point_rule, &
-      point_rule_type
-   use quadrature, only: integration_rule, point_count, recovery_count, recovery_points, &
-      recovery_weights
+   use quadrature, only: integration_rule, integration_rules, load_rules, &
+      most => most_points_of_rule, point_count, point_rule, point_rule_type, recovery_count, &
+      recovery_points, recovery_weights
    use shape_functions, only: node_position
    use sparse_matrix, only: sparse_matrix_type, triplet_list_type
    implicit none

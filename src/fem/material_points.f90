@@ -15,7 +15,7 @@ module material_points
       set_mean_dilatation, strain_along_z
    use point_histories, only: point_histories_type, point_history_type
    use point_materials, only: point_material_type
-   use point_rules, only: most => most_points_of_rule, point_rule_type
+   use quadrature, only: most => most_points_of_rule, point_rule_type
    use shape_functions, only: node_position
    implicit none
    private

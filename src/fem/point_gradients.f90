@@ -4,7 +4,7 @@
 module point_gradients
    use kinds, only: dp
    use mesh, only: nodes_per_element
-   use point_rules, only: most => most_points_of_rule, point_rule_type
+   use quadrature, only: most => most_points_of_rule, point_rule_type
    implicit none
    private
    public :: add_hoop_strain, find_negative_gradient, find_strains, set_mean_dilatation, &

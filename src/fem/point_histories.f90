@@ -6,8 +6,7 @@ module point_histories
    use kinds, only: dp
    use mesh, only: mesh_type
    use point_materials, only: point_materials_type
-   use point_rules, only: most => most_points_of_rule
-   use quadrature, only: point_count
+   use quadrature, only: most => most_points_of_rule, point_count
    implicit none
    private
    public :: point_histories_type, point_history_type, history_count

@@ -1,5 +1,6 @@
 !> The stiffness matrices K^n of (2.4) of all bodies, and the forces that temperatures and initial
-!> stresses exert on them. Rows 2i - 1 and 2i are u_x and u_y of node i; bodies share no entries.
+!> stresses exert on them; the same of springs and trusses. Rows 2i - 1 and 2i are u_x and u_y of
+!> node i; bodies share no entries.
 module stiffness_matrix
    use element_assembly, only: element_assembly_type
    use element_elasticity, only: element_stiffness, element_stress_force, element_thermal_load
@@ -7,12 +8,14 @@ module stiffness_matrix
    use kinds, only: dp
    use materials, only: section_type, strain_freedoms
    use mesh, only: mesh_type
+   use model, only: bar_type
    use point_materials, only: point_materials_type
    use quadrature, only: most_points, point_count
    use sparse_matrix, only: linear_combination, sparse_matrix_type, triplet_list_type
    implicit none
    private
-   public :: assemble_stiffness, assemble_thermal_load, assemble_initial_force
+   public :: assemble_stiffness, assemble_thermal_load, assemble_initial_force, bar_stiffness, &
+      bar_thermal_load
 
 contains
 
@@ -143,5 +146,55 @@ contains
          end associate
       end do
    end function assemble_initial_force
+
+   !> Nodal forces a k a^T of bars per nodal displacement, a being the terms of the elongation.
+   pure function bar_stiffness(bars, nodes) result(stiffness)
+      type(bar_type), intent(in) :: bars(:)
+      integer, intent(in) :: nodes                     !! number of nodes
+      type(sparse_matrix_type) :: stiffness            !! (2 nodes, 2 nodes) [force/length]
+      type(triplet_list_type) :: list
+      integer :: i, j, k
+
+      call list%reserve(sum([(size(bars(k)%elongation%node)**2, k=1, size(bars))]))
+      do k = 1, size(bars)
+         associate (a => bars(k)%elongation)
+            do i = 1, size(a%node)
+               do j = 1, size(a%node)
+                  call list%add(2*(a%node(i) - 1) + a%dof(i), 2*(a%node(j) - 1) + a%dof(j), &
+                     bars(k)%stiffness*a%coefficient(i)*a%coefficient(j))
+               end do
+            end do
+         end associate
+      end do
+      stiffness = list%compress(2*nodes, 2*nodes)
+   end function bar_stiffness
+
+   !> Nodal forces of bars per nodal temperature over the natural state.
+   pure function bar_thermal_load(bars, nodes) result(load)
+      type(bar_type), intent(in) :: bars(:)
+      integer, intent(in) :: nodes                     !! number of nodes
+      type(sparse_matrix_type) :: load                 !! (2 nodes, nodes) [force/temperature]
+      type(triplet_list_type) :: list
+      integer :: entries, i, j, k
+
+      entries = 0
+      do k = 1, size(bars)
+         if (allocated(bars(k)%mean%node)) entries = entries + size(bars(k)%elongation%node)* &
+            size(bars(k)%mean%node)
+      end do
+      call list%reserve(entries)
+      do k = 1, size(bars)
+         if (.not. allocated(bars(k)%mean%node)) cycle
+         associate (a => bars(k)%elongation, mean => bars(k)%mean)
+            do i = 1, size(a%node)
+               do j = 1, size(mean%node)
+                  call list%add(2*(a%node(i) - 1) + a%dof(i), mean%node(j), &
+                     bars(k)%warm_force*a%coefficient(i)*mean%coefficient(j))
+               end do
+            end do
+         end associate
+      end do
+      load = list%compress(2*nodes, nodes)
+   end function bar_thermal_load
 
 end module stiffness_matrix

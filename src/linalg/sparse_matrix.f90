@@ -350,52 +350,8 @@ contains
       type(sparse_matrix_type), intent(in) :: t     !! (n, m) columns of a row in any order
       type(sparse_matrix_type) :: lower             !! (m, m)
 
-      if (selects(t)) then
-         lower = selected(a, t)
-      else
-         lower = in_order(product_of(transposed(t), product_of(a, t, .false.), .true.))
-      end if
+      lower = in_order(product_of(transposed(t), product_of(a, t, .false.), .true.))
    end function congruent
-
-   !> Whether T v are all entries of v, in their order, and zeros.
-   pure logical function selects(t)
-      type(sparse_matrix_type), intent(in) :: t     !! (n, m)
-      integer :: entries
-
-      selects = all(t%row_start(2:) - t%row_start(:t%row_count) <= 1)
-      if (.not. selects) return
-      entries = t%row_start(t%row_count + 1) - 1
-      selects = entries == t%column_count
-      if (selects) selects = all(abs(t%value(:entries) - 1.0_dp) <= 0.0_dp)
-      if (selects) selects = all(t%column(2:entries) > t%column(:entries - 1))
-   end function selects
-
-   !> T^T A T of such a T, its lower triangle: rows and columns of A.
-   pure function selected(a, t) result(lower)
-      type(sparse_matrix_type), intent(in) :: a     !! (n, n) columns of a row ascending
-      type(sparse_matrix_type), intent(in) :: t     !! (n, m)
-      type(sparse_matrix_type) :: lower             !! (m, m)
-      integer :: i, j, k, n
-
-      lower = sparse_matrix_type(t%column_count, t%column_count)
-      allocate (lower%row_start(t%column_count + 1), lower%column(size(a%value)), &
-         lower%value(size(a%value)))
-      n = 0
-      lower%row_start(1) = 1
-      do i = 1, a%row_count
-         if (t%row_start(i + 1) == t%row_start(i)) cycle
-         do k = a%row_start(i), a%row_start(i + 1) - 1
-            j = a%column(k)
-            if (j > i) exit
-            if (t%row_start(j + 1) == t%row_start(j)) cycle
-            n = n + 1
-            lower%column(n) = t%column(t%row_start(j))
-            lower%value(n) = a%value(k)
-         end do
-         lower%row_start(t%column(t%row_start(i)) + 1) = n + 1
-      end do
-      call resize(lower, n)
-   end function selected
 
    !> Both triangles of a symmetric matrix.
    pure function symmetric(lower) result(matrix)

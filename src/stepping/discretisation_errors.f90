@@ -13,8 +13,8 @@ module discretisation_errors
    use patch_recovery, only: patch_recovery_type
    use material_points, only: material_points_type
    use point_histories, only: point_history_type
-   use point_rules, only: integration_rules, most => most_points_of_rule
-   use quadrature, only: point_count, recovery_count, recovery_weights
+   use quadrature, only: integration_rules, most => most_points_of_rule, point_count, &
+      recovery_count, recovery_weights
    use shape_functions, only: node_position
    implicit none
    private

@@ -9,7 +9,7 @@ module energies
    use material_laws, only: law_points_type
    use point_histories, only: point_history_type
    use model, only: model_type
-   use point_rules, only: most => most_points_of_rule
+   use quadrature, only: most => most_points_of_rule
    use records, only: increment_record_type
    use simulation, only: point_fields_type, simulation_type
    use solution_state, only: solution_state_type

@@ -20,10 +20,9 @@ module increment_records
    use material_points, only: material_points_type
    use point_histories, only: point_history_type
    use melting, only: solid_fractions
-   use point_rules, only: most => most_points_of_rule
-   use point_properties, only: along_axes
+   use point_materials, only: along_axes
    use print_requests, only: print_request_type
-   use quadrature, only: point_count
+   use quadrature, only: most => most_points_of_rule, point_count
    use records, only: contact_record_type, element_points_record_type, increment_record_type
    use reduced_bodies, only: reduced_bodies_type
    use sliding_limits, only: worst_slide

@@ -36,7 +36,7 @@ module operator_corrections
    use material_points, only: least_elastic_part => elastic_part, material_points_type
    use point_histories, only: point_history_type
    use melting, only: melting_type
-   use point_rules, only: integration_rules, load_rules, most => most_points_of_rule
+   use quadrature, only: integration_rules, load_rules, most => most_points_of_rule
    use reduced_bodies, only: reduced_bodies_type
    use solution_state, only: solution_state_type
    use text, only: to_text

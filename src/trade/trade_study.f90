@@ -14,7 +14,7 @@ module trade_study
    use reported_quantities, only: traded
    use steps, only: analysis_coupled, solves_heat
    use text, only: percent, rounded, string_type, to_text
-   use variations, only: varied_increment, variation_type
+   use variations, only: variation_type
    implicit none
    private
    public :: trade_row_type, trade_type, targets, target_count, quantity_count, figure_count, &
@@ -282,8 +282,7 @@ contains
       allocate (times(0))
       do s = 1, size(model%steps)
          associate (step => longest%steps(s), most => max(most_instants/size(model%steps), 2))
-            step%first_increment = varied_increment(step%first_increment, step%period, &
-               longest_factor)
+            step%first_increment = min(step%first_increment*longest_factor, step%period)
             count = floor(step%period/step%first_increment + 1.0e-6_dp)
             step%first_increment = step%first_increment*(1 + (count - 1)/most)
             if (step%grows) step%first_increment = step%period

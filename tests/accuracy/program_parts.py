@@ -18,12 +18,12 @@ PARTS = {
         "balances:balance_heat", "edge_heat:supplied_heat",
         "field_recovery:heat_flux_samples", "material_points:heat_flux",
         "increment_solution:conduct", "heat_equation", "heat_reduction", "jump_loads", "loads:card_heat",
-        "loads:film_matrix", "loads:heat_load", "unit_loads:location_heat", "point_properties:conductivity_in",
+        "loads:film_matrix", "loads:heat_load", "unit_loads:location_heat", "point_materials:conductivity_in",
         "thermal_matrix",
     },
     "strain by heat": {
         "contact_operator:unstrained_forces", "element_elasticity:element_thermal_load",
-        "point_properties:thermal_modulus_in", "stiffness_matrix:assemble_thermal_load",
+        "point_materials:thermal_modulus_in", "stiffness_matrix:assemble_thermal_load",
     },
     "mechanics": CONTACT_FOLDER - {
         # Pairs conduct, whether bodies move or not: these make them and their results.
@@ -33,7 +33,7 @@ PARTS = {
         "element_elasticity", "field_recovery:stress_samples", "material_points:stress",
         "increment_checks:warn_of_choices",
         "balances:balance_forces", "increment_solution:remember_slip",
-        "increment_solution:load_mechanics", "point_properties:elasticity_in",
+        "increment_solution:load_mechanics", "point_materials:elasticity_in",
         "stiffness_matrix",
     },
     "contact": CONTACT_FOLDER | COUPLING | {
