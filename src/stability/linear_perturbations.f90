@@ -9,14 +9,14 @@
 !> slipping and stuck contact points keep their states, points at rest their conductance. At edges
 !> inside a side of mortar points heat follows the openings themselves, which move the edges.
 !>
-!> N is formed as rows over the nodes; on a sparse tail each answer is a solution of its own
-!> (contact_answers).
+!> N is formed as rows over the nodes; on a sparse tail each answer is a solution of the contact
+!> system, and so is each product with its transposed.
 module linear_perturbations
    use closing_instant, only: contact_change_type, contact_response
-   use contact_answers, only: contact_answers_type
    use contact_heat, only: changes_by_faces
    use contact_operator, only: make_graph, opening_changes, openings
-   use contact_system, only: closing_law_type
+   use contact_system, only: closing_law_type, contact_open, contact_state_type
+   use contact_workspace, only: contact_workspace_type
    use dense, only: transposed_product
    use edge_heat, only: find_heat_by_opening
    use errors, only: error_type
@@ -30,8 +30,19 @@ module linear_perturbations
    private
    public :: linear_perturbation_type
 
-   !> How the contact answers temperatures.
-   type, extends(contact_answers_type) :: linear_perturbation_type
+   !> How the contact answers temperatures. Changes are those of the conductances of some contact
+   !> points, of the heats of friction, and of the openings of contact points at edges inside a side,
+   !> one behind the other.
+   type :: linear_perturbation_type
+      integer :: changes = 0                       !! n
+      integer, allocatable :: active(:)            !! (a) contact points whose conductance counts
+      integer :: heated = 0                        !! heats of friction
+      integer, allocatable :: at_edge(:)           !! contact points whose openings count
+      type(contact_workspace_type) :: tangent      !! factors of the contact states
+      type(contact_state_type) :: contact          !! these states
+      type(increment_workspace_type) :: laws       !! graphs, faces, heat of friction
+      real(dp), allocatable :: coordinate(:)       !! (m) of the laws [length]
+      real(dp), allocatable :: slope(:)            !! (m) of omega by the opening
       logical :: takes_rates = .false.         !! whether y depends on dT/dt: by slip that goes on
       real(dp), allocatable :: reads(:, :)     !! (nodes, n) N^T at constant temperatures
       !> (nodes, n) what it has more at unit rate, where that is anything
@@ -43,6 +54,7 @@ module linear_perturbations
       procedure :: begin
       procedure :: answers
       procedure :: answers_to_rates
+      procedure :: sums_of_answers
       procedure :: heats
       procedure :: heat_loads
       procedure :: nodal_heat
@@ -99,18 +111,17 @@ contains
       self%slope = slope
       if (heat%schur%is_sparse()) return
       call read_temperatures(self, bodies)
-      if (bodies%points%vary_with_temperature()) call read_faces(self, bodies)
    end subroutine begin
 
-   !> How the changes y follow temperatures by the strains of the bodies: what loads of the
-   !> mechanical tail change, of which temperatures make those that temperatures_in_loads has.
+   !> How the changes y follow temperatures: by the strains of the bodies, what loads of the
+   !> mechanical tail change, of which temperatures make those that temperatures_in_loads has, and
+   !> by the laws of the faces.
    subroutine read_temperatures(self, bodies)
       type(linear_perturbation_type), intent(inout) :: self           ! receives it
       type(reduced_bodies_type), intent(in) :: bodies
       real(dp), dimension(bodies%mechanical%map%tail, bodies%mechanical%map%tail) :: unit
-      real(dp) :: change(size(self%slope), size(unit, 2))
-      real(dp), dimension(size(unit, 1), size(self%active) + self%heated + size(self%at_edge)) :: &
-         by_load, by_rate
+      real(dp) :: opening(size(self%slope), size(unit, 2)), of_point(size(self%slope))
+      real(dp), dimension(size(unit, 1), self%changes) :: by_load, by_rate
       type(contact_change_type) :: of_contact
       integer :: k
 
@@ -119,43 +130,33 @@ contains
          unit(k, k) = 1.0_dp
       end do
       call opening_changes(bodies, self%laws%pass%graph, self%tangent, self%contact, unit, &
-         change, of_contact)
-      by_rate = 0.0_dp
-      associate (a => size(self%active), friction => self%laws%friction)
-         do k = 1, a
-            by_load(:, k) = self%slope(self%active(k))*change(self%active(k), :)
-         end do
-         if (self%heated > 0) then
-            by_load(:, a + 1:a + self%heated) = transpose(friction%changes(bodies, &
-               self%contact, of_contact, 0.0_dp))
-            by_rate(:, a + 1:a + self%heated) = transpose(friction%changes(bodies, &
-               self%contact, of_contact, 1.0_dp)) - by_load(:, a + 1:a + self%heated)
-         end if
-         by_load(:, a + self%heated + 1:) = transpose(change(self%at_edge, :))
-      end associate
+         opening, of_contact)
+      by_load = transpose(changes_with(self, bodies, opening, of_contact, 0.0_dp))
       self%reads = temperatures_in_loads(bodies, by_load)
-      if (self%takes_rates) self%reads_rate = temperatures_in_loads(bodies, by_rate)
+      if (self%takes_rates) then
+         by_rate = transpose(changes_with(self, bodies, opening, of_contact, 1.0_dp)) - by_load
+         self%reads_rate = temperatures_in_loads(bodies, by_rate)
+      end if
+      do k = 1, merge(size(self%active), 0, bodies%points%vary_with_temperature())
+         of_point = 0.0_dp
+         of_point(self%active(k)) = 1.0_dp
+         call add_faces(self, bodies, of_point, self%reads(:, k))
+      end do
    end subroutine read_temperatures
 
    !> Adds how conductances follow the temperatures of the faces by their laws.
-   pure subroutine read_faces(self, bodies)
-      type(linear_perturbation_type), intent(inout) :: self
+   pure subroutine add_faces(self, bodies, by_conductance, sums)
+      type(linear_perturbation_type), intent(in) :: self
       type(reduced_bodies_type), intent(in) :: bodies
-      real(dp), dimension(size(self%coordinate), 2) :: mean, jump, change
-      real(dp) :: unit(size(self%coordinate))
-      integer :: k
+      real(dp), intent(in) :: by_conductance(:)                ! (m) factors of conductances
+      real(dp), intent(inout) :: sums(:)                       ! (nodes)
+      real(dp), dimension(size(by_conductance), 2) :: change, mean
 
-      mean = spread([1.0_dp, 0.0_dp], 1, size(self%coordinate))
-      jump = 1.0_dp - mean
-      change = changes_by_faces(bodies, self%laws, self%coordinate, mean, jump)
-      do k = 1, size(self%active)
-         unit = 0.0_dp
-         unit(self%active(k)) = change(self%active(k), 1)
-         call bodies%points%mean%add_shares(unit, self%reads(:, k))
-         unit(self%active(k)) = change(self%active(k), 2)
-         call bodies%points%difference%add_shares(unit, self%reads(:, k))
-      end do
-   end subroutine read_faces
+      mean = spread([1.0_dp, 0.0_dp], 1, size(by_conductance))
+      change = changes_by_faces(bodies, self%laws, self%coordinate, mean, 1.0_dp - mean)
+      call bodies%points%mean%add_shares(change(:, 1)*by_conductance, sums)
+      call bodies%points%difference%add_shares(change(:, 2)*by_conductance, sums)
+   end subroutine add_faces
 
    !> N: changes y with temperatures that grow at a rate.
    function answers(self, bodies, temperature, growth) result(changes)
@@ -166,7 +167,7 @@ contains
       real(dp) :: changes(self%changes, size(temperature, 2))
 
       if (bodies%thermal%division%is_tail() .and. self%changes > 0) then
-         changes = self%found_answers(bodies, temperature, growth)
+         changes = found_answers(self, bodies, temperature, growth)
          return
       end if
       changes = transposed_product(self%reads, temperature)
@@ -182,12 +183,85 @@ contains
       real(dp) :: changes(self%changes, size(temperature, 2))
 
       if (bodies%thermal%division%is_tail() .and. self%changes > 0) then
-         changes = self%found_answers(bodies, temperature, 1.0_dp) - &
-            self%found_answers(bodies, temperature, 0.0_dp)
+         changes = found_answers(self, bodies, temperature, 1.0_dp) - &
+            found_answers(self, bodies, temperature, 0.0_dp)
       else
          changes = transposed_product(self%reads_rate, temperature)
       end if
    end function answers_to_rates
+
+   !> N on a sparse tail, by a solution of the contact system.
+   function found_answers(self, bodies, temperature, growth) result(changes)
+      type(linear_perturbation_type), intent(in) :: self
+      type(reduced_bodies_type), intent(in) :: bodies
+      real(dp), intent(in) :: temperature(:, :)                ! (nodes, columns) [temperature]
+      real(dp), intent(in) :: growth                           ! of theirs [1/time]
+      real(dp) :: changes(self%changes, size(temperature, 2))
+      real(dp), dimension(size(self%slope), size(temperature, 2)) :: by_faces, jump, mean, opening
+      type(contact_change_type) :: of_contact
+      integer :: k
+
+      call opening_changes(bodies, self%laws%pass%graph, self%tangent, self%contact, &
+         loads_of_temperatures(bodies, temperature), opening, of_contact)
+      changes = changes_with(self, bodies, opening, of_contact, growth)
+      if (.not. bodies%points%vary_with_temperature()) return
+      do k = 1, size(temperature, 2)
+         mean(:, k) = bodies%points%means(temperature(:, k))
+         jump(:, k) = bodies%points%jumps(temperature(:, k))
+      end do
+      by_faces = changes_by_faces(bodies, self%laws, self%coordinate, mean, jump)
+      changes(:size(self%active), :) = changes(:size(self%active), :) + by_faces(self%active, :)
+   end function found_answers
+
+   !> Changes y with openings of the contact points, forces and slip.
+   function changes_with(self, bodies, opening, of_contact, growth) result(changes)
+      type(linear_perturbation_type), intent(in) :: self
+      type(reduced_bodies_type), intent(in) :: bodies
+      real(dp), intent(in) :: opening(:, :)                    ! (m, columns) changes [length]
+      type(contact_change_type), intent(in) :: of_contact
+      real(dp), intent(in) :: growth                           ! of these [1/time]
+      real(dp) :: changes(self%changes, size(opening, 2))
+
+      associate (a => size(self%active))
+         changes(:a, :) = spread(self%slope(self%active), 2, size(opening, 2))* &
+            opening(self%active, :)
+         if (self%heated > 0) changes(a + 1:a + self%heated, :) = self%laws%friction%changes( &
+            bodies, self%contact, of_contact, growth)
+         changes(a + self%heated + 1:, :) = opening(self%at_edge, :)
+      end associate
+   end function changes_with
+
+   !> N^T y: sums of changes y, as they follow the temperatures of the nodes.
+   function sums_of_answers(self, bodies, changes, growth) result(sums)
+      class(linear_perturbation_type), intent(in) :: self
+      type(reduced_bodies_type), intent(in) :: bodies
+      real(dp), intent(in) :: changes(:)                       !! (n) y
+      real(dp), intent(in) :: growth                           !! [1/time]
+      real(dp) :: sums(bodies%thermal%matrix%row_count)        !! (nodes)
+      real(dp) :: by_motion(bodies%mechanical%map%tail, 1), by_force(bodies%mechanical%map%tail, 1)
+      real(dp), dimension(size(self%slope)) :: by_conductance, by_opening
+      real(dp) :: by_load(bodies%mechanical%map%tail, 1)
+
+      associate (a => size(self%active), system => bodies%equilibrium%contact)
+         by_conductance = 0.0_dp
+         by_conductance(self%active) = changes(:a)
+         by_opening = self%slope*by_conductance
+         by_opening(self%at_edge) = by_opening(self%at_edge) + changes(a + self%heated + 1:)
+         by_motion = 0.0_dp
+         by_force = 0.0_dp
+         call add_openings(self, bodies, by_opening, by_motion(:, 1), by_force(:, 1))
+         if (self%heated > 0) call add_heats(self, bodies, changes(a + 1:a + self%heated), growth, &
+            by_motion(:, 1), by_force(:, 1))
+         ! Forces are the load less S times the motion that it makes.
+         by_load = by_motion - system%schur%times(by_force)
+         call self%tangent%solve_transposed(by_load(:, 1))
+         by_load = by_load + by_force
+      end associate
+      associate (of_loads => temperatures_in_loads(bodies, by_load))
+         sums = of_loads(:, 1)
+      end associate
+      if (bodies%points%vary_with_temperature()) call add_faces(self, bodies, by_conductance, sums)
+   end function sums_of_answers
 
    !> F^T T: the heats of unit changes at the temperatures of a field.
    pure function heats(self, bodies, temperature) result(sums)
@@ -271,5 +345,56 @@ contains
          bodies%mechanical, bodies%thermal_load%multiply(temperature), no_support), &
          change%motion(:, 1))
    end function displacement
+
+   !> Adds what openings have of motions and forces of the tail.
+   pure subroutine add_openings(self, bodies, by_opening, by_motion, by_force)
+      type(linear_perturbation_type), intent(in) :: self
+      type(reduced_bodies_type), intent(in) :: bodies
+      real(dp), intent(in) :: by_opening(:)                    ! (m) factors of openings
+      real(dp), intent(inout) :: by_motion(:), by_force(:)     ! (tail) likewise
+      integer :: k
+
+      do k = 1, size(by_opening)
+         associate (row => bodies%equilibrium%contact%normal(k), weight => bodies%points%weight(k))
+            if (weight <= 0.0_dp) cycle
+            if (self%contact%contact_state(k) == contact_open) then
+               by_motion(row) = by_motion(row) - by_opening(k)
+            else
+               by_force(row) = by_force(row) - by_opening(k)/(weight* &
+                  self%laws%pass%graph(k)%modulus)
+            end if
+         end associate
+      end do
+   end subroutine add_openings
+
+   !> Adds what heats of friction have of motions and forces of the tail.
+   pure subroutine add_heats(self, bodies, by_heat, growth, by_motion, by_force)
+      type(linear_perturbation_type), intent(in) :: self
+      type(reduced_bodies_type), intent(in) :: bodies
+      real(dp), intent(in) :: by_heat(:)                       ! (heats) factors of them
+      real(dp), intent(in) :: growth
+      real(dp), intent(inout) :: by_motion(:), by_force(:)     ! (tail) likewise
+      real(dp) :: unit(size(self%slope), 3, 3)     ! of force, shear and slip, a column each
+      real(dp) :: per(size(by_heat), 3)
+      integer :: k
+
+      unit = 0.0_dp
+      do k = 1, 3
+         unit(:, k, k) = 1.0_dp
+      end do
+      per = self%laws%friction%changes(bodies, self%contact, contact_change_type( &
+         force=unit(:, :, 1), shear=unit(:, :, 2), slip=unit(:, :, 3)), growth)
+      associate (system => bodies%equilibrium%contact)
+         do k = 1, size(by_heat)
+            associate (j => bodies%points%heated(k))
+               by_force(system%normal(j)) = by_force(system%normal(j)) + by_heat(k)*per(k, 1)
+               if (system%tangent(j) == 0) cycle
+               by_force(system%tangent(j)) = by_force(system%tangent(j)) - by_heat(k)* &
+                  (per(k, 2) + per(k, 3)*system%compliance(j))
+               by_motion(system%tangent(j)) = by_motion(system%tangent(j)) + by_heat(k)*per(k, 3)
+            end associate
+         end do
+      end associate
+   end subroutine add_heats
 
 end module linear_perturbations
