@@ -19,7 +19,7 @@ module local_refinement
    implicit none
    private
    public :: choose_neighbours, elements_about, elements_at_points, elements_at_surfaces, &
-      elements_in_region, hanging_count, coarse_side, fine_sides, nodes_between, hanging_rows, &
+      elements_in_region, hanging_count, coarse_side, fine_sides, hanging_rows, &
       place_hanging, distance_of_lines, largest_part
 
    !> Part of DISTANCE= by which an element must come nearer: what only touches stays out.
@@ -313,24 +313,6 @@ contains
       hanging_count = 0
       if (allocated(mesh%hanging_sides)) hanging_count = size(mesh%hanging_sides, 2)
    end function hanging_count
-
-   !> The nodes that hang there, the one next to an end of the side first, or 0 for the second.
-   pure function nodes_between(mesh, h, first) result(nodes)
-      type(mesh_type), intent(in) :: mesh
-      integer, intent(in) :: h                      !! 1..hanging_count
-      integer, intent(in) :: first                  !! the end
-      integer :: nodes(2)
-
-      associate (side => mesh%hanging_sides(:, h))
-         if (side(4) == 0) then
-            nodes = [side(2), 0]
-         else if (side(1) == first) then
-            nodes = side(4:5)
-         else
-            nodes = side([5, 4])
-         end if
-      end associate
-   end function nodes_between
 
    !> Conditions of hanging nodes on a field: a sum for each of them, itself first, that is 0.
    pure function hanging_rows(mesh) result(rows)

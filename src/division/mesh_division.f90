@@ -4,7 +4,7 @@
 module mesh_division
    use element_kinds, only: element_node_count, kind_count, triangle6
    use element_sides, only: element_sides_type, find_sides
-   use local_refinement, only: coarse_side, fine_sides, hanging_count, nodes_between
+   use local_refinement, only: coarse_side, fine_sides, hanging_count
    use kinds, only: dp
    use mesh, only: mesh_type
    use shape_functions, only: element_shape, side_shape
@@ -79,7 +79,11 @@ contains
       allocate(division%between(2, division%sides%count), source=0)
       do h = 1, hanging_count(mesh)
          side = division%sides%index_of(coarse_side(mesh, h))
-         division%between(:, side) = nodes_between(mesh, h, division%sides%ends(1, side))
+         associate (nodes => mesh%hanging_sides(:, h), between => division%between(:, side))
+            between = nodes(4:5)
+            if (nodes(4) == 0) between = [nodes(2), 0]
+            if (nodes(4) > 0 .and. division%sides%ends(1, side) == nodes(3)) between = nodes([5, 4])
+         end associate
       end do
       last = division%nodes
       do side = 1, division%sides%count

@@ -62,8 +62,6 @@ module heat_equation
       real(dp), allocatable :: beyond_old(:), beyond(:)
    contains
       procedure :: takes_past_conductance
-      procedure :: takes_past_field
-      procedure :: is_steady
       procedure :: is_explicit
       procedure :: amplification
       procedure :: never_damps
@@ -99,21 +97,6 @@ contains
          takes_past_conductance = abs(a(2)) + abs(b(2)) + abs(b(3)) > 0.0_dp
       end associate
    end function takes_past_conductance
-
-   !> Whether temperatures at the end of the increment depend on those at its start.
-   pure logical function takes_past_field(self)
-      class(heat_equation_type), intent(in) :: self
-
-      takes_past_field = sum(abs(self%scheme%b)) > 0.0_dp .or. self%duration > 0.0_dp
-   end function takes_past_field
-
-   !> Whether temperatures at the end of the increment depend on nothing at its start.
-   pure logical function is_steady(self)
-      class(heat_equation_type), intent(in) :: self
-
-      is_steady = abs(self%scheme%c(1)) <= 0.0_dp .and. .not. (self%takes_past_conductance() .or. &
-         self%takes_past_field())
-   end function is_steady
 
    !> Whether omega at the end of the increment has no part in its temperatures: a3 = b3 = 0.
    pure logical function is_explicit(self)

@@ -188,17 +188,11 @@ contains
    !> Version of MUMPS.
    function mumps_version() result(version)
       character(:), allocatable :: version   !! such as 5.5.1
-      type(dmumps_struc) :: id
+      type(mumps_solver_type) :: solver
 
-      id%comm = 0
-      id%sym = 0
-      id%par = 1
-      id%job = job_start
-      call dmumps(id)
-      id%icntl(1:3) = -1
-      version = trim(id%version_number)
-      id%job = job_end
-      call dmumps(id)
+      call start(solver, 0, 0)
+      version = trim(solver%mumps%version_number)
+      call solver%release()
    end function mumps_version
 
    !> A job of MUMPS. Where memory runs out, which a solution would not tell, the process ends as

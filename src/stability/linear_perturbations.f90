@@ -31,8 +31,8 @@ module linear_perturbations
    public :: linear_perturbation_type
 
    !> How the contact answers temperatures. Changes are those of the conductances of some contact
-   !> points, of the heats of friction, and of the openings of contact points at edges inside a side,
-   !> one behind the other.
+   !> points, of the heats of friction, and of the openings of contact points at edges inside a
+   !> side, one behind the other.
    type :: linear_perturbation_type
       integer :: changes = 0                       !! n
       integer, allocatable :: active(:)            !! (a) contact points whose conductance counts
