@@ -2,32 +2,44 @@
 !> fitted by least squares to the values at their recovery points. A fit knows the sites alone: its
 !> value at a position is a sum of the values with weights.
 module element_patches
-   use element_kinds, only: element_corner_count, element_node_count, quad4_enhanced
-   use element_sides, only: element_sides_type, find_sides
+   use element_kinds, only: element_corner_count, element_node_count
    use field_recovery, only: point_map_type
    use kinds, only: dp
    use mesh, only: mesh_type
-   use quadrature, only: recovery_count
-   use sorting, only: invert_lists, unique_sorted
-   use sparse_matrix, only: sparse_matrix_type, triplet_list_type
    implicit none
    private
-   public :: layout_type, layout_of, centres_for, midsides_at, fit_round_corner, is_surrounded, &
-      is_linear, sites_of, corners_of, add_weights, fit_type, make_fit, quadratic_terms, &
-      summed
+   public :: layout_type, centres_for, midsides_at, fit_round_corner, is_surrounded, is_linear, &
+      sites_of, corners_of, add_weights, fit_type, make_fit, quadratic_terms, sample_sums_type, &
+      row_type, add_weight
+
+   !> The weights of all points, joined.
+   type :: sample_sums_type
+      integer, allocatable :: first(:)      !! (points + 1) first weight of each point
+      integer, allocatable :: sample(:)     !! (weights) recovery point that it belongs to
+      real(dp), allocatable :: weight(:)    !! (weights)
+   contains
+      procedure :: join
+      procedure :: add
+   end type sample_sums_type
+
+   !> Weights of one point.
+   type :: row_type
+      private
+      integer :: count = 0
+      integer, allocatable :: sample(:)
+      real(dp), allocatable :: weight(:)
+   end type row_type
 
    integer, parameter :: fewest_for_cubic = 16   !! sites: four elements of eight nodes
 
    !> Elements round each corner, and their recovery points.
    type :: layout_type
-      type(mesh_type) :: mesh                    !! points for nodes, and the elements that count
-      type(element_sides_type) :: sides
-      integer, allocatable :: first_sample(:)    !! (elements) first recovery point
+      type(mesh_type), pointer :: mesh => null()
+      type(point_map_type), pointer :: points => null()   !! where averaged fields live
+      integer, allocatable :: first_sample(:)    !! (elements + 1) first recovery point
       real(dp), allocatable :: position(:, :)    !! (2, recovery points) [length]
       integer, allocatable :: start(:)           !! (points + 1) first of the elements round each
       integer, allocatable :: around(:)          !! elements of which the points are corners
-      integer, allocatable :: side_start(:)      !! (points + 1) first of the sides at each
-      integer, allocatable :: side_at(:)         !! sides that end at the points
       !> (elements) whether the mean of an element's values is fitted at their centre
       logical, allocatable :: is_centred(:)
    end type layout_type
@@ -59,101 +71,84 @@ module element_patches
 
 contains
 
-   !> The layout of the elements that count.
-   pure function layout_of(mesh, points, first_sample, position, counts) result(layout)
-      type(mesh_type), intent(in) :: mesh
-      type(point_map_type), intent(in) :: points
-      integer, intent(in) :: first_sample(:)     !! (elements + 1) first recovery point
-      real(dp), intent(in) :: position(:, :)     !! (2, recovery points) x, y [length]
-      logical, intent(in) :: counts(:)           !! (elements)
-      type(layout_type) :: layout
-      integer :: e
-      integer, allocatable :: chosen(:)
-
-      chosen = pack([(e, e=1, size(counts))], counts)
-      layout%mesh%node_number = points%node
-      layout%mesh%coordinates = mesh%coordinates(:, points%node)
-      layout%mesh%element_kind = mesh%element_kind(chosen)
-      layout%mesh%element_nodes = points%element_points(:, chosen)
-      layout%sides = find_sides(layout%mesh)
-      layout%first_sample = first_sample(chosen)
-      layout%position = position
-      associate (kinds => layout%mesh%element_kind, n => size(points%node), sides => layout%sides)
-         call invert_lists(layout%mesh%element_nodes, element_corner_count(kinds), n, &
-            layout%start, layout%around)
-         call invert_lists(sides%ends([1, 3], :sides%count), spread(2, 1, sides%count), n, &
-            layout%side_start, layout%side_at)
-         layout%is_centred = is_linear(kinds) .and. .not. is_row(layout)
-      end associate
-   end function layout_of
-
-   !> Whether elements with incompatible modes, which follow bending, have no neighbours on two
-   !> opposite sides, so that the centres do not show it.
-   pure function is_row(layout)
-      type(layout_type), intent(in) :: layout
-      logical :: is_row(size(layout%mesh%element_kind)), is_free(4)
-      integer :: e
-
-      is_row = .false.
-      do e = 1, size(is_row)
-         if (layout%mesh%element_kind(e) /= quad4_enhanced) cycle
-         is_free = layout%sides%elements(2, layout%sides%of_element(:, e)) == 0
-         is_row(e) = any(is_free(:2) .and. is_free(3:))
-      end do
-   end function is_row
-
-   !> The sides that end at a corner.
-   pure function sides_at(layout, corner) result(sides)
-      type(layout_type), intent(in) :: layout
-      integer, intent(in) :: corner
-      integer, allocatable :: sides(:)
-
-      sides = layout%side_at(layout%side_start(corner):layout%side_start(corner + 1) - 1)
-   end function sides_at
-
    !> Corners whose fits hold at a corner: its own, or, where its elements are too few for one, as
-   !> at the outline of a body, those of its neighbours inside, first along sides, then across
-   !> elements; without any its own, widened.
+   !> at the outline of a body, those of its neighbours inside; without any its own, widened.
    pure function centres_for(layout, corner, has_fit) result(centres)
       type(layout_type), intent(in) :: layout
       integer, intent(in) :: corner
       logical, intent(in) :: has_fit(:)
       integer, allocatable :: centres(:)
-      integer :: k
+      integer :: corners, k, other, q, reach
 
       centres = [corner]
       if (has_fit(corner)) return
-      centres = sum(layout%sides%ends([1, 3], sides_at(layout, corner)), dim=1) - corner
-      centres = pack(centres, has_fit(centres))
-      if (size(centres) > 0) return
-      do k = layout%start(corner), layout%start(corner + 1) - 1
-         associate (e => layout%around(k))
-            centres = [centres, layout%mesh%element_nodes(:element_corner_count( &
-               layout%mesh%element_kind(e)), e)]
-         end associate
+      deallocate (centres)
+      allocate (centres(0))
+      ! First along sides, then across elements.
+      do reach = 1, 2
+         do k = layout%start(corner), layout%start(corner + 1) - 1
+            associate (mine => layout%points%element_points(:, layout%around(k)))
+               corners = element_corner_count(layout%mesh%element_kind(layout%around(k)))
+               do q = 1, corners
+                  other = mine(q)
+                  if (.not. has_fit(other) .or. any(centres == other)) cycle
+                  if (reach == 1 .and. mine(modulo(q, corners) + 1) /= corner .and. &
+                     mine(modulo(q - 2, corners) + 1) /= corner) cycle
+                  centres = [centres, other]
+               end do
+            end associate
+         end do
+         if (size(centres) > 0) return
       end do
-      centres = unique_sorted(pack(centres, has_fit(centres)))
-      if (size(centres) == 0) centres = [corner]
+      centres = [corner]
    end function centres_for
 
    !> Whether the elements round a corner close a ring, so that it is not on the outline.
    pure logical function is_surrounded(layout, corner)
       type(layout_type), intent(in) :: layout
       integer, intent(in) :: corner                 !! a point
+      integer :: corners, k, q
+      integer, allocatable :: before(:), after(:)
 
-      is_surrounded = all(layout%sides%elements(2, sides_at(layout, corner)) > 0)
+      allocate (before(0), after(0))
+      do k = layout%start(corner), layout%start(corner + 1) - 1
+         associate (e => layout%around(k))
+            corners = element_corner_count(layout%mesh%element_kind(e))
+            q = findloc(layout%points%element_points(:corners, e), corner, dim=1)
+            before = [before, layout%points%element_points(modulo(q - 2, corners) + 1, e)]
+            after = [after, layout%points%element_points(modulo(q, corners) + 1, e)]
+         end associate
+      end do
+      is_surrounded = size(before) > 0
+      do k = 1, size(before)
+         is_surrounded = is_surrounded .and. any(after == before(k))
+      end do
    end function is_surrounded
 
-   !> Midside points of the sides that end at a corner. Where one hangs on a larger element it is a
-   !> corner, with a fit of its own.
+   !> Midside points of the sides that end at a corner, each once.
    pure function midsides_at(layout, corner) result(near)
       type(layout_type), intent(in) :: layout
       integer, intent(in) :: corner
       integer, allocatable :: near(:)
+      integer :: corners, i, k, q, sides(2)
 
-      near = layout%sides%ends(2, sides_at(layout, corner))
-      near = pack(near, near > 0)
-      near = pack(near, layout%start(near + 1) == layout%start(near))
+      allocate (near(0))
+      do k = layout%start(corner), layout%start(corner + 1) - 1
+         associate (e => layout%around(k))
+            corners = element_corner_count(layout%mesh%element_kind(e))
+            if (element_node_count(layout%mesh%element_kind(e)) == corners) cycle
+            q = findloc(layout%points%element_points(:corners, e), corner, dim=1)
+            sides = corners + [q, modulo(q - 2, corners) + 1]
+            do i = 1, 2
+               associate (midside => layout%points%element_points(sides(i), e))
+                  ! Where it hangs on a larger element it is a corner, with a fit of its own.
+                  if (layout%start(midside + 1) > layout%start(midside)) cycle
+               end associate
+               if (any(near == layout%points%element_points(sides(i), e))) cycle
+               near = [near, layout%points%element_points(sides(i), e)]
+            end do
+         end associate
+      end do
    end function midsides_at
 
    !> Fits the elements round a corner, with their neighbours where they are too few.
@@ -208,11 +203,11 @@ contains
       do i = 1, within
          corners = element_corner_count(layout%mesh%element_kind(patch(i)))
          do q = 1, corners
-            side = layout%mesh%element_nodes([q, modulo(q, corners) + 1], patch(i))
+            side = layout%points%element_points([q, modulo(q, corners) + 1], patch(i))
             do k = layout%start(side(1)), layout%start(side(1) + 1) - 1
                associate (other => layout%around(k))
                   if (any(patch == other)) cycle
-                  if (all(layout%mesh%element_nodes(:, other) /= side(2))) cycle
+                  if (all(layout%points%element_points(:, other) /= side(2))) cycle
                   patch = [patch, other]
                end associate
             end do
@@ -227,17 +222,17 @@ contains
       real(dp), allocatable :: sites(:, :)
       integer :: i, n
 
-      allocate (sites(2, sum(recovery_count(layout%mesh%element_kind(patch)))))
+      allocate (sites(2, sum(layout%first_sample(patch + 1) - layout%first_sample(patch))))
       n = 0
       do i = 1, size(patch)
-         associate (first => layout%first_sample(patch(i)), &
-            m => recovery_count(layout%mesh%element_kind(patch(i))))
+         associate (mine => layout%position(:, layout%first_sample(patch(i)): &
+            layout%first_sample(patch(i) + 1) - 1))
             if (layout%is_centred(patch(i))) then
-               sites(:, n + 1) = sum(layout%position(:, first:first + m - 1), dim=2)/m
+               sites(:, n + 1) = sum(mine, dim=2)/size(mine, 2)
                n = n + 1
             else
-               sites(:, n + 1:n + m) = layout%position(:, first:first + m - 1)
-               n = n + m
+               sites(:, n + 1:n + size(mine, 2)) = mine
+               n = n + size(mine, 2)
             end if
          end associate
       end do
@@ -260,64 +255,27 @@ contains
       end do
    end function corners_of
 
-   !> Adds the weights of the sites of a patch in the value at a point.
-   pure subroutine add_weights(sums, layout, point, patch, weights)
-      type(triplet_list_type), intent(inout) :: sums   !! (points, recovery points)
+   !> Adds weights of the sites of a patch to those of a point.
+   pure subroutine add_weights(row, layout, patch, weights)
+      type(row_type), intent(inout) :: row
       type(layout_type), intent(in) :: layout
-      integer, intent(in) :: point
       integer, intent(in) :: patch(:)
       real(dp), intent(in) :: weights(:)
-      real(dp) :: weight
-      integer :: i, n, s
+      integer :: i, n, s, samples
 
-      call sums%make_room(4*size(patch))
-      n = 1
+      n = 0
       do i = 1, size(patch)
-         associate (samples => recovery_count(layout%mesh%element_kind(patch(i))))
-            do s = 0, samples - 1
-               weight = weights(n)
-               if (layout%is_centred(patch(i))) weight = weight/samples
-               call sums%add(point, layout%first_sample(patch(i)) + s, weight)
-               if (.not. layout%is_centred(patch(i))) n = n + 1
-            end do
-            if (layout%is_centred(patch(i))) n = n + 1
-         end associate
+         samples = layout%first_sample(patch(i) + 1) - layout%first_sample(patch(i))
+         do s = 0, samples - 1
+            if (layout%is_centred(patch(i))) then
+               call add_weight(row, layout%first_sample(patch(i)) + s, weights(n + 1)/samples)
+            else
+               call add_weight(row, layout%first_sample(patch(i)) + s, weights(n + 1 + s))
+            end if
+         end do
+         n = n + merge(1, samples, layout%is_centred(patch(i)))
       end do
    end subroutine add_weights
-
-   !> The matrix of weights, those of a recovery point at a point summed where it comes first.
-   pure function summed(list, points, samples) result(matrix)
-      type(triplet_list_type), intent(in) :: list   !! (points, recovery points)
-      integer, intent(in) :: points, samples        !! number of each
-      type(sparse_matrix_type) :: matrix
-      integer :: k, n, p, place(samples)
-      integer, allocatable :: order(:)
-
-      matrix = sparse_matrix_type(points, samples)
-      call invert_lists(reshape(list%row(:list%length), [1, list%length]), spread(1, 1, &
-         list%length), points, matrix%row_start, order)
-      matrix%column = list%column(order)
-      matrix%value = list%value(order)
-      place = 0
-      n = 0
-      do p = 1, points
-         associate (first => n + 1, own => order(matrix%row_start(p):matrix%row_start(p + 1) - 1))
-            matrix%row_start(p) = first
-            do k = 1, size(own)
-               associate (i => place(list%column(own(k))))
-                  if (i < first) then
-                     n = n + 1
-                     i = n
-                     matrix%column(n) = list%column(own(k))
-                     matrix%value(n) = 0.0_dp
-                  end if
-                  matrix%value(i) = matrix%value(i) + list%value(own(k))
-               end associate
-            end do
-         end associate
-      end do
-      matrix%row_start(points + 1) = n + 1
-   end function summed
 
    !> Fits polynomials to sites; terms that these do not determine are left out.
    pure function make_fit(sites, corners, terms) result(fit)
@@ -412,5 +370,94 @@ contains
          scaling(i, :) = axis/(unit*sqrt(variance))
       end do
    end function scaling_of
+
+   !> Adds a weight to those of a point.
+   pure subroutine add_weight(row, sample, weight)
+      type(row_type), intent(inout) :: row   !! weights of the point
+      integer, intent(in) :: sample          !! recovery point
+      real(dp), intent(in) :: weight         !! added to what the recovery point has
+      integer :: k
+
+      if (.not. allocated(row%sample)) allocate (row%sample(24), row%weight(24))
+      k = findloc(row%sample(:row%count), sample, dim=1)
+      if (k > 0) then
+         row%weight(k) = row%weight(k) + weight
+         return
+      end if
+      if (row%count == size(row%sample)) then
+         row%sample = [row%sample, row%sample]
+         row%weight = [row%weight, row%weight]
+      end if
+      row%count = row%count + 1
+      row%sample(row%count) = sample
+      row%weight(row%count) = weight
+   end subroutine add_weight
+
+   !> Joins the weights of the points.
+   pure subroutine join(self, rows)
+      class(sample_sums_type), intent(inout) :: self !! the weights, not yet formed
+      type(row_type), intent(in) :: rows(:)          !! (points)
+      integer :: p
+
+      allocate (self%first(size(rows) + 1), source=1)
+      do p = 1, size(rows)
+         self%first(p + 1) = self%first(p) + rows(p)%count
+      end do
+      allocate (self%sample(self%first(size(rows) + 1) - 1))
+      allocate (self%weight(size(self%sample)))
+      do p = 1, size(rows)
+         if (rows(p)%count == 0) cycle
+         self%sample(self%first(p):self%first(p + 1) - 1) = rows(p)%sample(:rows(p)%count)
+         self%weight(self%first(p):self%first(p + 1) - 1) = rows(p)%weight(:rows(p)%count)
+      end do
+   end subroutine join
+
+   !> Adds the sums to the values at the points.
+   pure subroutine add(self, components, samples, values)
+      class(sample_sums_type), intent(in) :: self       !! the weights
+      integer, intent(in) :: components                 !! 2 or 4
+      real(dp), intent(in) :: samples(components, *)    !! at the recovery points
+      real(dp), intent(inout) :: values(components, *)  !! at the points
+      integer :: p
+
+      do p = 1, size(self%first) - 1
+         associate (first => self%first(p), last => self%first(p + 1) - 1)
+            if (components == 4) then
+               call sum_four(last - first + 1, self%sample(first:last), self%weight(first:last), &
+                  samples, values(:, p))
+            else
+               call sum_two(last - first + 1, self%sample(first:last), self%weight(first:last), &
+                  samples, values(:, p))
+            end if
+         end associate
+      end do
+   end subroutine add
+
+   pure subroutine sum_four(n, sample, weight, samples, total)
+      integer, intent(in) :: n, sample(n)
+      real(dp), intent(in) :: weight(n), samples(4, *)
+      real(dp), intent(inout) :: total(4)
+      real(dp) :: a(2), b(2)
+      integer :: k
+
+      a = total(1:2)
+      b = total(3:4)
+      do k = 1, n
+         a = a + weight(k)*samples(1:2, sample(k))
+         b = b + weight(k)*samples(3:4, sample(k))
+      end do
+      total = [a, b]
+   end subroutine sum_four
+
+   pure subroutine sum_two(n, sample, weight, samples, total)
+      integer, intent(in) :: n, sample(n)
+      real(dp), intent(in) :: weight(n), samples(2, *)
+      real(dp), intent(inout) :: total(2)
+      integer :: k
+
+      do k = 1, n
+         total = total + weight(k)*samples(:, sample(k))
+      end do
+   end subroutine sum_two
 
 end module element_patches

@@ -19,12 +19,11 @@ module field_recovery
       most => most_points_of_rule, point_count, point_rule, point_rule_type, recovery_count, &
       recovery_points, recovery_weights
    use shape_functions, only: node_position
-   use sparse_matrix, only: sparse_matrix_type, triplet_list_type
    implicit none
    private
    public :: point_map_type, make_points, recovery_rules, stress_samples, &
-      heat_flux_samples, add_averages, average_samples, fit_of_points, element_error_type, &
-      measure_stress, measure_heat_flux, error_rules, error_record_type, squared_errors
+      heat_flux_samples, average_samples, fit_of_points, element_error_type, measure_stress, &
+      measure_heat_flux, error_rules, error_record_type, squared_errors
 
    !> Relative error of a body below which its fields are smooth but for rounding.
    real(dp), parameter :: smooth = 1.0e-8_dp
@@ -176,15 +175,14 @@ contains
       end function bilinear
    end function fit_of_points
 
-   !> Adds the weights of the recovery points in averages at some points: values extrapolated in
-   !> each element to its nodes.
-   pure subroutine add_averages(mesh, points, is_wanted, sums)
+   !> Values at the points: extrapolated in each element to its nodes, then averaged.
+   pure function average_samples(mesh, points, samples) result(values)
       type(mesh_type), intent(in) :: mesh
       type(point_map_type), intent(in) :: points
-      logical, intent(in) :: is_wanted(:)              !! (points)
-      type(triplet_list_type), intent(inout) :: sums   !! (points, recovery points)
-      real(dp) :: position(2, 8), weights(4, 8, kind_count)
-      integer :: e, first, k, q
+      real(dp), intent(in) :: samples(:, :)          !! (components, recovery points), 2 or 4
+      real(dp) :: values(size(samples, 1), size(points%node))   !! (components, points)
+      real(dp) :: weights(4, 8, kind_count), position(2, 8)
+      integer :: e, first, i, k, n, q
 
       do k = 1, kind_count
          position(:, :element_node_count(k)) = node_position(k)
@@ -192,38 +190,35 @@ contains
             weights(:recovery_count(k), q, k) = recovery_weights(k, position(:, q))
          end do
       end do
-      call sums%make_room(sum(recovery_count(mesh%element_kind)*element_node_count( &
-         mesh%element_kind)))
-      first = 0
+      values = 0.0_dp
+      first = 1
       do e = 1, size(mesh%element_kind)
-         associate (kind => mesh%element_kind(e), places => points%element_points(:, e))
+         associate (kind => mesh%element_kind(e))
+            n = recovery_count(kind)
             do q = 1, element_node_count(kind)
-               if (.not. is_wanted(places(q))) cycle
-               do k = 1, recovery_count(kind)
-                  call sums%add(places(q), first + k, weights(k, q, kind)/ &
-                     points%sharing(places(q)))
-               end do
+               call add_samples(size(samples, 1), n, samples(:, first:first + n - 1), &
+                  weights(:n, q, kind), values(:, points%element_points(q, e)))
             end do
-            first = first + recovery_count(kind)
+            first = first + n
          end associate
       end do
-   end subroutine add_averages
-
-   !> Averages of values at the points.
-   pure function average_samples(mesh, points, samples) result(values)
-      type(mesh_type), intent(in) :: mesh
-      type(point_map_type), intent(in) :: points
-      real(dp), intent(in) :: samples(:, :)          !! (components, recovery points)
-      real(dp) :: values(size(samples, 1), size(points%node))   !! (components, points)
-      real(dp) :: by_component(size(points%node), size(samples, 1))
-      type(sparse_matrix_type) :: averages
-      type(triplet_list_type) :: sums
-
-      call add_averages(mesh, points, spread(.true., 1, size(points%node)), sums)
-      averages = sums%compress(size(points%node), size(samples, 2))
-      call averages%multiply_columns(transpose(samples), by_component)
-      values = transpose(by_component)
+      do i = 1, size(points%sharing)
+         if (points%sharing(i) > 1) values(:, i) = values(:, i)/points%sharing(i)
+      end do
    end function average_samples
+
+   pure subroutine add_samples(components, n, samples, weights, values)
+      integer, intent(in) :: components, n
+      real(dp), intent(in) :: samples(components, n), weights(n)
+      real(dp), intent(inout) :: values(components)
+      integer :: c, k
+
+      do c = 1, components, 2
+         do k = 1, n
+            values(c:c + 1) = values(c:c + 1) + weights(k)*samples(c:c + 1, k)
+         end do
+      end do
+   end subroutine add_samples
 
    !> The points at which errors are integrated.
    pure function error_rules() result(rules)

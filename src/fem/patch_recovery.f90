@@ -9,16 +9,16 @@
 !> times the second derivatives. At the outline of a section, where patches have too few elements,
 !> these are taken from quadratics fitted round the next corners inside.
 module patch_recovery
-   use element_kinds, only: quad8, quad8_reduced
+   use element_kinds, only: element_corner_count, quad4_enhanced, quad8, quad8_reduced
    use element_patches, only: add_weights, centres_for, corners_of, fit_round_corner, fit_type, &
-      is_linear, is_surrounded, layout_of, layout_type, make_fit, midsides_at, &
-      quadratic_terms, sites_of, summed
-   use field_recovery, only: add_averages, point_map_type
+      is_linear, is_surrounded, layout_type, make_fit, midsides_at, quadratic_terms, row_type, &
+      sample_sums_type, sites_of
+   use field_recovery, only: point_map_type
    use kinds, only: dp
    use mesh, only: mesh_type
    use quadrature, only: recovery_count, recovery_weights
    use shape_functions, only: node_position
-   use sparse_matrix, only: sparse_matrix_type, triplet_list_type
+   use sorting, only: invert_lists
    implicit none
    private
    public :: patch_recovery_type
@@ -31,9 +31,9 @@ module patch_recovery
    !> Nodal values from values at the recovery points of all elements.
    type :: patch_recovery_type
       private
-      type(sparse_matrix_type) :: smooth    !! the fits' values; the weights of a point sum to 1
+      type(sample_sums_type) :: smooth      !! the fits' values; the weights of a point sum to 1
       logical, allocatable :: inside(:)     !! (points) on which fits excel averages
-      type(sparse_matrix_type) :: outline   !! averages and what they leave out at the other points
+      type(sample_sums_type) :: curvature   !! what averages leave out at the other points
    contains
       procedure :: prepare
       procedure :: recover
@@ -45,52 +45,82 @@ contains
    !> Fits the patches, of some elements alone where only what these have is asked for.
    subroutine prepare(self, mesh, points, first_sample, position, counts)
       class(patch_recovery_type), intent(inout) :: self !! the weights, not yet formed
-      type(mesh_type), intent(in) :: mesh
-      type(point_map_type), intent(in) :: points   !! where averaged fields live
+      type(mesh_type), intent(in), target :: mesh
+      type(point_map_type), intent(in), target :: points   !! where averaged fields live
       integer, intent(in) :: first_sample(:)            !! (elements + 1) first recovery point
       real(dp), intent(in) :: position(:, :)            !! (2, recovery points) x, y [length]
       logical, intent(in) :: counts(:)                  !! (elements)
-      type(triplet_list_type) :: sums
+      type(row_type) :: rows(size(points%node))
       type(layout_type) :: layout
       type(fit_type) :: fit
       logical :: has_fit(size(points%node))
-      integer, allocatable :: centres(:), patch(:), places(:)
+      integer, allocatable :: centres(:), near(:), patch(:)
       integer :: c, i, p
+      real(dp) :: share
 
-      layout = layout_of(mesh, points, first_sample, position, counts)
-      call sums%reserve(100*size(layout%first_sample))
-      allocate (self%inside(size(points%node)), source=.false.)
-      do p = 1, size(self%inside)
+      layout%mesh => mesh
+      layout%points => points
+      layout%first_sample = first_sample
+      layout%position = position
+      call invert_lists(points%element_points, merge(element_corner_count(mesh%element_kind), &
+         0, counts), size(rows), layout%start, layout%around)
+      layout%is_centred = is_linear(mesh%element_kind) .and. .not. is_row(layout)
+      allocate (self%inside(size(rows)), source=.false.)
+      do p = 1, size(rows)
          has_fit(p) = .false.
          if (layout%start(p + 1) > layout%start(p)) then
             call fit_round_corner(layout, p, 0, patch, fit)
             has_fit(p) = fit%ample
             ! Averages over linear elements are as good inside a regular mesh as fits are.
             self%inside(p) = fit%ample .and. is_surrounded(layout, p) .and. &
-               .not. any(is_linear(layout%mesh%element_kind(patch)))
+               .not. any(is_linear(mesh%element_kind(patch)))
          end if
       end do
-      do p = 1, size(self%inside)
+      do p = 1, size(rows)
          if (layout%start(p + 1) == layout%start(p)) cycle
          centres = centres_for(layout, p, has_fit)
-         places = [p, midsides_at(layout, p)]
+         near = midsides_at(layout, p)
+         share = 1.0_dp/size(centres)
          do c = 1, size(centres)
             call fit_round_corner(layout, centres(c), most_layers, patch, fit)
-            do i = 1, size(places)
-               call add_weights(sums, layout, places(i), patch, share_of(places(i) == p, centres)* &
-                  fit%weights_at(layout%mesh%coordinates(:, places(i))))
+            call add_weights(rows(p), layout, patch, &
+               share*fit%weights_at(mesh%coordinates(:, points%node(p))))
+            ! A midside node has the mean of what holds at the ends of its side.
+            do i = 1, size(near)
+               call add_weights(rows(near(i)), layout, patch, &
+                  share/2*fit%weights_at(mesh%coordinates(:, points%node(near(i)))))
             end do
          end do
       end do
-      self%smooth = summed(sums, size(points%node), size(position, 2))
-      do p = 1, size(has_fit)
+      call self%smooth%join(rows)
+      do p = 1, size(rows)
          if (self%inside(p)) self%inside(midsides_at(layout, p)) = .true.
       end do
-      call sums%reserve(0)
-      call add_averages(mesh, points, .not. self%inside, sums)
-      call add_curvatures(layout, self%inside, sums)
-      self%outline = summed(sums, size(points%node), size(position, 2))
+      self%curvature = curvature_sums(layout, self%inside)
    end subroutine prepare
+
+   !> Whether elements with incompatible modes, which follow bending, have no neighbours on two
+   !> opposite sides, so that the centres do not show it.
+   pure function is_row(layout)
+      type(layout_type), intent(in) :: layout
+      logical :: is_row(size(layout%mesh%element_kind)), is_free(4)
+      integer :: e, k, q
+
+      do e = 1, size(is_row)
+         is_row(e) = .false.
+         if (layout%mesh%element_kind(e) /= quad4_enhanced) cycle
+         is_free = .true.
+         do q = 1, 4
+            associate (side => layout%points%element_points([q, modulo(q, 4) + 1], e))
+               do k = layout%start(side(1)), layout%start(side(1) + 1) - 1
+                  if (layout%around(k) /= e .and. any(layout%points%element_points(:, &
+                     layout%around(k)) == side(2))) is_free(q) = .false.
+               end do
+            end associate
+         end do
+         is_row(e) = any(is_free(:2) .and. is_free(3:))
+      end do
+   end function is_row
 
    !> The values of the fits at all points; zero at those outside all elements.
    pure subroutine recover(self, components, samples, values)
@@ -100,61 +130,56 @@ contains
       real(dp), intent(out) :: values(components, size(self%inside))   !! at the points
 
       values = 0.0_dp
-      call self%smooth%add_product(components, samples, values)
+      call self%smooth%add(components, samples, values)
    end subroutine recover
 
-   !> The best values at the points: inside a section those of the fits, at its outline averages and
-   !> what they leave out.
+   !> The best values at the points, from averages: inside a section those of the fits, at its
+   !> outline the averages and what they leave out.
    pure subroutine improve(self, components, samples, smooth, values)
       class(patch_recovery_type), intent(in) :: self    !! the weights
       integer, intent(in) :: components                 !! 2 or 4
       real(dp), intent(in) :: samples(components, *)    !! at the recovery points
       real(dp), intent(in) :: smooth(:, :)              !! (components, points) of recover
-      real(dp), intent(out) :: values(:, :)             !! (components, points)
+      real(dp), intent(inout) :: values(:, :)           !! (components, points) averages, bettered
       integer :: p
 
       do p = 1, size(self%inside)
-         values(:, p) = 0.0_dp
          if (self%inside(p)) values(:, p) = smooth(:, p)
       end do
-      call self%outline%add_product(components, samples, values)
+      call self%curvature%add(components, samples, values)
    end subroutine improve
 
-   !> Adds the weights of what averages leave out at the points of the outline.
-   pure subroutine add_curvatures(layout, inside, sums)
+   !> The weights of what is left out at the points of the outline; none elsewhere.
+   pure function curvature_sums(layout, inside) result(sums)
       type(layout_type), intent(in) :: layout
       logical, intent(in) :: inside(:)             !! (points) that have fits of their own
-      type(triplet_list_type), intent(inout) :: sums
-      integer, allocatable :: centres(:), places(:)
+      type(sample_sums_type) :: sums
+      type(row_type) :: rows(size(layout%points%node))
+      integer, allocatable :: centres(:), near(:)
       integer :: c, i, p
+      real(dp) :: share
 
-      do p = 1, size(inside)
+      do p = 1, size(rows)
          if (inside(p) .or. layout%start(p + 1) == layout%start(p)) cycle
          centres = centres_for(layout, p, inside)
-         places = [p, midsides_at(layout, p)]
-         places = pack(places, .not. inside(places))
+         near = midsides_at(layout, p)
+         share = 1.0_dp/size(centres)
          do c = 1, size(centres)
             if (.not. inside(centres(c))) cycle
             associate (patch => layout%around(layout%start(centres(c)): &
                layout%start(centres(c) + 1) - 1))
                if (.not. suits(layout%mesh, patch)) cycle
-               do i = 1, size(places)
-                  call add_curvature(sums, layout, patch, places(i), share_of(places(i) == p, &
-                     centres))
+               call add_curvature(rows(p), layout, patch, p, share)
+               ! A midside node has the mean of what is missing at the ends of its side.
+               do i = 1, size(near)
+                  if (.not. inside(near(i))) call add_curvature(rows(near(i)), layout, patch, &
+                     near(i), share/2)
                end do
             end associate
          end do
       end do
-   end subroutine add_curvatures
-
-   !> Share of what holds round a centre in the value at a corner; a midside node has the mean of
-   !> what holds at the ends of its side.
-   pure real(dp) function share_of(is_corner, centres) result(share)
-      logical, intent(in) :: is_corner
-      integer, intent(in) :: centres(:)
-
-      share = merge(1.0_dp, 0.5_dp, is_corner)/size(centres)
-   end function share_of
+      call sums%join(rows)
+   end function curvature_sums
 
    !> Whether a patch has superconvergent values, those of eight-node elements, and follows them.
    pure logical function suits(mesh, patch)
@@ -181,8 +206,8 @@ contains
 
    !> Adds the difference, at a point, of the polynomial of a patch and of its bilinear
    !> extrapolation in the elements of the patch that meet there.
-   pure subroutine add_curvature(sums, layout, patch, point, share)
-      type(triplet_list_type), intent(inout) :: sums
+   pure subroutine add_curvature(row, layout, patch, point, share)
+      type(row_type), intent(inout) :: row
       type(layout_type), intent(in) :: layout
       integer, intent(in) :: patch(:), point
       real(dp), intent(in) :: share
@@ -193,12 +218,12 @@ contains
 
       sites = sites_of(layout, patch)
       fit = make_fit(sites, corners_of(layout, patch), quadratic_terms)
-      missing = fit%weights_at(layout%mesh%coordinates(:, point))
+      missing = fit%weights_at(layout%mesh%coordinates(:, layout%points%node(point)))
       extrapolated = 0*missing
       nodes = node_position(quad8)
       meeting = 0
       do i = 1, size(patch)
-         q = findloc(layout%mesh%element_nodes(:, patch(i)), point, dim=1)
+         q = findloc(layout%points%element_points(:, patch(i)), point, dim=1)
          if (q == 0) cycle
          meeting = meeting + 1
          associate (weights => recovery_weights(quad8, nodes(:, q)), n => recovery_count(quad8))
@@ -207,8 +232,7 @@ contains
             end do
          end associate
       end do
-      if (meeting > 0) call add_weights(sums, layout, point, patch, &
-         share*(missing - extrapolated/meeting))
+      if (meeting > 0) call add_weights(row, layout, patch, share*(missing - extrapolated/meeting))
    end subroutine add_curvature
 
 end module patch_recovery

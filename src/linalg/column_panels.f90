@@ -97,14 +97,18 @@ contains
       integer, intent(in) :: first_row(:)   !! (columns) first row of each column
       integer, intent(in) :: pivots         !! columns that are eliminated
       integer, intent(in) :: from           !! first column
-      integer :: i, j
+      integer :: high, i, j
 
       flops = 0
       do j = from, size(first_row)
-         do i = first_row(j) + 1, j - 1
-            flops = flops + 2*max(min(i, pivots + 1) - max(first_row(i), first_row(j)), 0)
+         high = min(j - 1, pivots)
+         do i = first_row(j) + 1, high
+            flops = flops + 2*max(i - max(first_row(i), first_row(j)), 0)
          end do
-         flops = flops + 3*max(min(j - 1, pivots) - first_row(j) + 1, 0)
+         do i = pivots + 1, j - 1
+            flops = flops + 2*max(pivots + 1 - max(first_row(i), first_row(j)), 0)
+         end do
+         flops = flops + 3*max(high - first_row(j) + 1, 0)
       end do
    end function crout_flops
 

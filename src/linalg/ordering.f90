@@ -165,6 +165,7 @@ contains
             tail = tail + 1
             order(tail) = neighbour
          end do
+         if (tail <= front + 1) cycle
          associate (beside => order(front + 1:tail))
             beside = beside(sort_order(graph%row_start(beside + 1) - graph%row_start(beside)))
          end associate

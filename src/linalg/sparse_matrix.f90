@@ -22,7 +22,6 @@ module sparse_matrix
       procedure :: multiply
       procedure :: multiply_columns
       procedure :: multiply_transposed
-      procedure :: add_product
    end type sparse_matrix_type
 
    !> Entries as they come from the elements, in any order; equal positions add up.
@@ -33,7 +32,6 @@ module sparse_matrix
       real(dp), allocatable :: value(:)       !! (capacity) its value
    contains
       procedure :: reserve
-      procedure :: make_room
       procedure :: add
       procedure :: add_block
       procedure :: compress
@@ -131,54 +129,6 @@ contains
       end do
    end function multiply_transposed
 
-   !> Adds A x, x being rows of two or four values that stand together.
-   pure subroutine add_product(self, n, x, y)
-      class(sparse_matrix_type), intent(in) :: self
-      integer, intent(in) :: n                      !! values of a row, 2 or 4
-      real(dp), intent(in) :: x(n, *)               !! (n, columns)
-      real(dp), intent(inout) :: y(n, *)            !! (n, rows)
-      integer :: i
-
-      do i = 1, self%row_count
-         associate (first => self%row_start(i), last => self%row_start(i + 1) - 1)
-            if (n == 4) then
-               call add_four(last - first + 1, self%column(first:last), self%value(first:last), &
-                  x, y(:, i))
-            else
-               call add_two(last - first + 1, self%column(first:last), self%value(first:last), &
-                  x, y(:, i))
-            end if
-         end associate
-      end do
-   end subroutine add_product
-
-   pure subroutine add_four(entries, column, value, x, total)
-      integer, intent(in) :: entries, column(entries)
-      real(dp), intent(in) :: value(entries), x(4, *)
-      real(dp), intent(inout) :: total(4)
-      real(dp) :: a(2), b(2)
-      integer :: k
-
-      a = total(1:2)
-      b = total(3:4)
-      do k = 1, entries
-         a = a + value(k)*x(1:2, column(k))
-         b = b + value(k)*x(3:4, column(k))
-      end do
-      total = [a, b]
-   end subroutine add_four
-
-   pure subroutine add_two(entries, column, value, x, total)
-      integer, intent(in) :: entries, column(entries)
-      real(dp), intent(in) :: value(entries), x(2, *)
-      real(dp), intent(inout) :: total(2)
-      integer :: k
-
-      do k = 1, entries
-         total = total + value(k)*x(:, column(k))
-      end do
-   end subroutine add_two
-
    !> Makes room for entries; what the list held is dropped.
    pure subroutine reserve(self, capacity)
       class(triplet_list_type), intent(inout) :: self
@@ -188,18 +138,6 @@ contains
       if (allocated(self%row)) deallocate (self%row, self%column, self%value)
       allocate (self%row(capacity), self%column(capacity), self%value(capacity))
    end subroutine reserve
-
-   !> Makes room for more entries beside those that the list holds.
-   pure subroutine make_room(self, more)
-      class(triplet_list_type), intent(inout) :: self
-      integer, intent(in) :: more                     !! entries expected
-
-      if (.not. allocated(self%row)) call self%reserve(more)
-      if (self%length + more <= size(self%row)) return
-      self%row = [self%row, self%row, spread(0, 1, more)]
-      self%column = [self%column, self%column, spread(0, 1, more)]
-      self%value = [self%value, self%value, spread(0.0_dp, 1, more)]
-   end subroutine make_room
 
    !> Adds one entry; the list must have room for it.
    pure subroutine add(self, row, column, value)
@@ -424,7 +362,7 @@ contains
 
       c%row_count = a%row_count
       c%column_count = b%column_count
-      allocate (c%row_start(a%row_count + 1), c%column(0), c%value(0))
+      allocate (c%row_start(a%row_count + 1), c%column(size(a%value)), c%value(size(a%value)))
       c%row_start(1) = 1
       row_of = 0
       do i = 1, a%row_count

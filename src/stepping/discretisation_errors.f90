@@ -128,10 +128,11 @@ contains
       call set_temperature(self, model, temperature + model%initial_temperature)
       values = 0.0_dp
       allocate (samples(4, self%samples%first(size(self%samples%first)) - 1))
-      allocate (smooth(4, size(self%points%node)), stress(4, size(self%points%node)))
+      allocate (smooth(4, size(self%points%node)))
       call stress_samples(self%samples, model%mesh, displacement, temperature, samples)
       if (allocated(remembered)) call follow_laws(self, model, displacement, temperature, &
          remembered, samples)
+      stress = average_samples(model%mesh, self%points, samples)
       call self%patches%recover(4, samples, smooth)
       call self%patches%improve(4, samples, smooth, stress)
       scale = scale_of(samples)
@@ -216,8 +217,9 @@ contains
       call set_temperature(self, model, temperature)
       values = 0.0_dp
       allocate (samples(2, self%samples%first(size(self%samples%first)) - 1))
-      allocate (smooth(2, size(self%points%node)), flux(2, size(self%points%node)))
+      allocate (smooth(2, size(self%points%node)))
       call heat_flux_samples(self%samples, model%mesh, temperature, samples)
+      flux = average_samples(model%mesh, self%points, samples)
       call self%patches%recover(2, samples, smooth)
       call self%patches%improve(2, samples, smooth, flux)
       scale = scale_of(samples)
