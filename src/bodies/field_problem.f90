@@ -6,8 +6,8 @@
 !> Loads that were solved for are kept with what became of them: a load that they make up needs no
 !> solution of its own.
 !>
-!> A matrix without a tail that is another one for nearly each solution is not factored where
-!> conjugate gradients are quick.
+!> A matrix without a tail that has another diagonal beside it for nearly each solution is not
+!> factored where conjugate gradients are quick.
 !>
 !> Where many interfaces join many bodies, these are reduced piece by piece (body_pieces), and what
 !> is left of them is the tail, a sparse one; else all unknowns but the contact's are eliminated:
@@ -39,6 +39,7 @@ module field_problem
       real(dp), allocatable :: forces(:)    !! (dofs) nodal ones, where bodies are reduced by pieces
       real(dp), allocatable :: rhs(:, :)                      !! (equations, 1) right-hand side
       real(dp), allocatable :: condensed(:) !! (tail) right-hand side condensed on the tail
+      real(dp) :: rates = 0.0_dp            !! norm of what balances it, where this is known
    end type field_load_type
 
    !> Matrix of the bodies.
@@ -58,10 +59,11 @@ module field_problem
       type(linear_constraints_type) :: map                    !! u = T v + B g, and the unknowns v
       integer :: numbering = 0                                !! which numbering, counted
       type(body_division_type) :: division                    !! where bodies are reduced by pieces
-      !> Whether most solutions have a matrix of their own, and neither pieces nor a tail; where
-      !> they have, the basis of the gradient solver
+      !> Whether most solutions have a diagonal of their own, and neither pieces nor a tail; where
+      !> they have, the basis of the gradient solver, and the leading nodes of the map
       logical :: changes = .false.
       type(sparse_matrix_type) :: basis
+      integer, allocatable :: leading(:)
    contains
       procedure :: matrix_of_unknowns
    end type field_problem_type
@@ -72,6 +74,9 @@ module field_problem
       integer :: values = 0                                   !! of the matrix likewise
       !> (dofs, dofs) what was added to the matrix; without values where there was nothing
       type(sparse_matrix_type) :: added = sparse_matrix_type()
+      !> Where the problem changes, both together, and the diagonal beside them
+      type(sparse_matrix_type) :: whole
+      real(dp), allocatable :: diagonal(:)                    !! (dofs)
       !> (leading) the order in which solvers eliminate the unknowns of this numbering, once made
       integer, allocatable :: rank(:)
       class(linear_solver_type), allocatable :: solver        !! pattern and factors
@@ -91,6 +96,7 @@ module field_problem
       procedure :: is_for
       procedure :: is_of
       procedure :: factor
+      procedure :: add_diagonal
       procedure :: condense_inside
       procedure :: forces_inside
       procedure :: load_of
@@ -203,6 +209,10 @@ contains
       else
          lower = problem%matrix_of_unknowns(added)
       end if
+      if (problem%changes) then
+         self%whole = linear_combination(1.0_dp, problem%matrix, 1.0_dp, added)
+         self%diagonal = spread(0.0_dp, 1, self%whole%row_count)
+      end if
       if (allocated(self%solver) .and. self%analysed /= self%numbering) then
          if (problem%changes .or. .not. self%solver%is_for(lower, problem%map%tail, &
             problem%map%last)) call self%release_tail()
@@ -233,6 +243,30 @@ contains
       end associate
       call self%release()
    end subroutine factor
+
+   !> Factors with another diagonal beside the matrix.
+   !> Errors: as the solver's.
+   subroutine add_diagonal(self, problem, diagonal, error)
+      class(field_reduction_type), intent(inout) :: self
+      type(field_problem_type), intent(in) :: problem     !! that it is of
+      real(dp), intent(in) :: diagonal(:)                 !! (dofs) not negative
+      type(error_type), allocatable, intent(out) :: error
+      type(sparse_matrix_type) :: part
+      integer :: i
+
+      if (all(abs(self%diagonal - diagonal) <= 0.0_dp)) return
+      self%diagonal = diagonal
+      associate (n => size(diagonal))
+         part = sparse_matrix_type(n, n, [(i, i=1, n + 1)], [(i, i=1, n)], diagonal)
+      end associate
+      select type (solver => self%solver)
+      type is (gradient_solver_type)
+         call solver%add(problem%map%transform(part, 0.0_dp*problem%map%link_stiffness( &
+            problem%matrix)), error)
+      end select
+      self%factored = self%factored + 1
+      self%is_factored = .not. allocated(error)
+   end subroutine add_diagonal
 
    !> A solver for a problem.
    subroutine choose_solver(problem, solver_kind, solver)
@@ -453,11 +487,14 @@ contains
       else if (problem%changes .and. present(welded)) then
          load%condensed = [real(dp) ::]
          allocate (solution, mold=rest)
-         associate (first => welded(problem%map%leading_nodes()))
+         associate (first => welded(problem%leading))
             welded = problem%map%expand(first)
-            rest(:, 1) = load%rhs(:, 1) - problem%map%restrict(problem%matrix%multiply(welded) + &
-               self%added%multiply(welded))
-            call self%solver%recover(condensed, solution, rest)
+            rest(:, 1) = load%rhs(:, 1) - problem%map%restrict(self%whole%multiply(welded) + &
+               self%diagonal*welded)
+            select type (solver => self%solver)
+            type is (gradient_solver_type)
+               call solver%improve(load%rates, rest, solution)
+            end select
             welded = problem%map%expand(first + solution(:, 1), load%given)
          end associate
          return

@@ -370,8 +370,10 @@ contains
          self%thermal%changes = any(model%steps%is_transient) .and. size(points%weight) == 0 .and. &
             self%thermal%map%tail == 0 .and. .not. allocated(self%thermal%division%piece) .and. &
             any(melts(model%materials(model%sections%material)))
-         if (self%thermal%changes) self%thermal%basis = hierarchical_basis(model%mesh, &
-            self%thermal%map)
+         if (self%thermal%changes) then
+            self%thermal%leading = self%thermal%map%leading_nodes()
+            self%thermal%basis = hierarchical_basis(model%mesh, self%thermal%map)
+         end if
          self%jump_index = self%thermal%map%tail_index(self%thermal%map%introduced)
       end associate
    end subroutine number

@@ -58,6 +58,8 @@ module increment_data
       !> (m) laws of closing contact points that a solution on faces placed elsewhere had
       type(closing_law_type), allocatable :: closing_start(:)
       real(dp) :: same_slip = 0.0_dp        !! as contact_workspace_type has it [length]
+      !> Norm of the rates of stored heat on the nodes at its start, 0 where it is not known [power]
+      real(dp) :: stored_norm = 0.0_dp
       type(field_load_type) :: heat         !! load of (3.4)
       type(field_load_type) :: force        !! load of (2.4)
       real(dp), allocatable :: held_jump(:) !! (m) jump where both temperatures are prescribed

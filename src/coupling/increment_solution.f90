@@ -111,6 +111,7 @@ contains
          if (only_places(bodies, heat, trial)) call heat%condense_inside(bodies%thermal, sources, &
             given, trial%known(inside_heat), left, inside)
          data%heat = heat%load_of(bodies%thermal, sources, given, left)
+         data%heat%rates = data%stored_norm
          call heat%condense_load(bodies%thermal, data%heat, trial%known(of_heat), temperature, &
             inside)
          data%held_jump = bodies%points%jumps(given)

@@ -1,7 +1,8 @@
-!> Solver of matrices whose values change with nearly each solution, so that factors would serve but
-!> once: conjugate gradients, preconditioned by a sweep of Gauss and Seidel to and fro, at the cost
-!> of one product for both (S. C. Eisenstat, SIAM J. Sci. Stat. Comput. 2 (1981) 1). It takes few
-!> steps where heat is stored. A matrix that would need many goes to a direct solver.
+!> Solver of a matrix beside which a small part changes with nearly each solution, so that factors
+!> would serve but once: conjugate gradients, preconditioned by a sweep of Gauss and Seidel to and
+!> fro, at the cost of one product for both (S. C. Eisenstat, SIAM J. Sci. Stat. Comput. 2 (1981)
+!> 1). It takes few steps where heat is stored. A matrix that would need many goes to a direct
+!> solver.
 !>
 !> It solves for unknowns of a given basis: values between corners beside parts of those at corners
 !> (hierarchical basis) save half of the steps.
@@ -9,7 +10,7 @@ module gradient_solver
    use errors, only: error_type
    use kinds, only: dp, long
    use linear_solver, only: check_pattern, linear_solver_type
-   use sparse_matrix, only: congruent, sparse_matrix_type, symmetric
+   use sparse_matrix, only: congruent, linear_combination, sparse_matrix_type, symmetric
    implicit none
    private
    public :: gradient_solver_type
@@ -19,26 +20,30 @@ module gradient_solver
    integer, parameter :: trial_steps = 8
    real(dp), parameter :: trial_tolerance = 0.36_dp
    integer, parameter :: most_steps = 1000
-   !> What is left over of a right-hand side, and where the size of a solution is asked for
-   real(dp), parameter :: tolerance = 1.0e-11_dp, rough = 1.0e-3_dp
+   !> What is left over of a right-hand side, where the size of a solution is asked for, and of the
+   !> rates that balance
+   real(dp), parameter :: tolerance = 1.0e-11_dp, rough = 1.0e-3_dp, of_rates = 1.0e-10_dp
 
-   !> A matrix without a tail that is scaled to I + L + L^T, or the factors of another solver.
+   !> A matrix without a tail, with a part beside it scaled to I + L + L^T, or factors of both by
+   !> another solver.
    type, extends(linear_solver_type) :: gradient_solver_type
       class(linear_solver_type), allocatable :: direct   !! that other solver, given at first
       type(sparse_matrix_type) :: basis   !! unknowns by those that are solved for, given at first
       integer, allocatable, private :: rank(:)           !! (order) for it, if known
       logical, private :: is_analysed = .false.          !! whether it is
       logical, private :: iterates = .false.
-      !> Entries beside the diagonal, and their matrix between the unknowns that are solved for
-      real(dp), allocatable, private :: beside(:)
-      type(sparse_matrix_type), private :: transformed
-      type(sparse_matrix_type), private :: scaled        !! L by rows, beside a diagonal not read
+      type(sparse_matrix_type), private :: lower         !! as it was given, for the other solver
+      !> Between the unknowns that are solved for, both triangles, and that with the part, scaled
+      type(sparse_matrix_type), private :: transformed, scaled
+      integer, allocatable, private :: diagonal(:)       !! (order) places on its diagonal
       real(dp), allocatable, private :: scaling(:)       !! (order) 1/sqrt(diagonal)
    contains
       procedure :: analyse
       procedure :: factor
+      procedure :: add
       procedure :: condense
       procedure :: recover
+      procedure :: improve
       procedure :: release
    end type gradient_solver_type
 
@@ -66,21 +71,52 @@ contains
       type(error_type), allocatable, intent(out) :: error
       logical :: is_solved
       real(dp) :: load(self%order)
+      type(sparse_matrix_type) :: part
 
       call check_pattern(self, lower, error)
       if (allocated(error)) return
-      call scale_matrix(self, lower)
+      self%schur = reshape([real(dp) ::], [0, 0])
+      part = congruent(symmetric(lower), self%basis)
+      self%transformed = symmetric(part)
+      self%scaled = self%transformed
+      ! Rows of L have so many entries, the last of them on the diagonal.
+      self%diagonal = self%scaled%row_start(:self%order) + part%row_start(2:) - &
+         part%row_start(:self%order) - 1
+      call scale_matrix(self)
       load = 1.0_dp
       if (self%iterates) then
-         call iterate(self, trial_steps, trial_tolerance, load, is_solved)
+         call iterate(self, trial_steps, trial_tolerance, 0.0_dp, load, is_solved)
          self%iterates = is_solved
       end if
-      self%schur = reshape([real(dp) ::], [0, 0])
-      if (self%iterates) then
-         self%factor_bytes = storage_size(1.0_dp)/8*size(self%scaled%value, kind=long)
-         self%smallest_pivot = 1.0_dp
-         return
+      if (.not. self%iterates) then
+         self%lower = lower
+         call factor_directly(self, lower, error)
       end if
+   end subroutine factor
+
+   !> Factors the matrix that was given last with a positive semidefinite part beside it, within its
+   !> pattern. With that gradients are no slower.
+   !> Errors: as factor.
+   subroutine add(self, part, error)
+      class(gradient_solver_type), intent(inout) :: self
+      type(sparse_matrix_type), intent(in) :: part           !! (order, order) lower triangle
+      type(error_type), allocatable, intent(out) :: error
+
+      if (self%iterates) then
+         call add_part(self, part)
+         call scale_matrix(self)
+      else
+         call factor_directly(self, linear_combination(1.0_dp, self%lower, 1.0_dp, part), error)
+      end if
+   end subroutine add
+
+   !> Factors with the other solver.
+   !> Errors: as its analyse and factor.
+   subroutine factor_directly(self, lower, error)
+      type(gradient_solver_type), intent(inout) :: self
+      type(sparse_matrix_type), intent(in) :: lower
+      type(error_type), allocatable, intent(out) :: error
+
       if (.not. self%is_analysed) then
          self%direct%joined = self%joined
          call self%direct%analyse(lower, self%tail, self%rank, error)
@@ -92,64 +128,70 @@ contains
       self%factor_bytes = self%direct%factor_bytes
       self%smallest_pivot = self%direct%smallest_pivot
       self%lost_unknown = self%direct%lost_unknown
-   end subroutine factor
+   end subroutine factor_directly
 
-   !> Takes a matrix to the unknowns that are solved for. What changes is mostly its diagonal.
-   pure subroutine transform(self, lower)
+   !> Takes a part to the unknowns that are solved for, and adds it to the matrix there.
+   pure subroutine add_part(self, part)
       type(gradient_solver_type), intent(inout) :: self
-      type(sparse_matrix_type), intent(in) :: lower
-      type(sparse_matrix_type) :: rest
-      integer :: i, j, k, place
-
-      rest = lower
-      rest%value(rest%row_start(2:) - 1) = 0.0_dp
-      if (.not. allocated(self%beside)) self%beside = 0.0_dp*rest%value - 1.0_dp
-      if (any(abs(self%beside - rest%value) > 0.0_dp)) then
-         self%beside = rest%value
-         self%transformed = congruent(symmetric(rest), self%basis)
-      end if
-      self%scaled = self%transformed
-      associate (to => self%scaled, by => self%basis)
-         do i = 1, self%order
-            do j = by%row_start(i), by%row_start(i + 1) - 1
-               do k = by%row_start(i), j
-                  associate (first => to%row_start(by%column(j)), last => to%row_start( &
-                     by%column(j) + 1) - 1)
-                     place = first - 1 + findloc(to%column(first:last), by%column(k), dim=1)
-                  end associate
-                  to%value(place) = to%value(place) + lower%value(lower%row_start(i + 1) - 1)* &
-                     by%value(j)*by%value(k)
-               end do
-            end do
-         end do
-      end associate
-   end subroutine transform
-
-   !> Brings the diagonal to 1, if all of it is positive.
-   pure subroutine scale_matrix(self, lower)
-      type(gradient_solver_type), intent(inout) :: self
-      type(sparse_matrix_type), intent(in) :: lower
+      type(sparse_matrix_type), intent(in) :: part
       integer :: i, k
 
-      call transform(self, lower)
+      self%scaled%value(:) = self%transformed%value
+      do i = 1, self%order
+         do k = part%row_start(i), part%row_start(i + 1) - 1
+            if (abs(part%value(k)) <= 0.0_dp) cycle
+            call add_entry(self%scaled, self%basis, i, part%column(k), part%value(k))
+            if (i /= part%column(k)) call add_entry(self%scaled, self%basis, part%column(k), i, &
+               part%value(k))
+         end do
+      end do
+   end subroutine add_part
+
+   !> Adds what an entry is between other unknowns.
+   pure subroutine add_entry(matrix, basis, i, j, value)
+      type(sparse_matrix_type), intent(inout) :: matrix      ! between the others
+      type(sparse_matrix_type), intent(in) :: basis
+      integer, intent(in) :: i, j                            ! row and column
+      real(dp), intent(in) :: value
+      integer :: k, l, place
+
+      do k = basis%row_start(i), basis%row_start(i + 1) - 1
+         do l = basis%row_start(j), basis%row_start(j + 1) - 1
+            associate (first => matrix%row_start(basis%column(k)), next => matrix%row_start( &
+               basis%column(k) + 1))
+               place = first - 1 + findloc(matrix%column(first:next - 1), basis%column(l), dim=1)
+            end associate
+            matrix%value(place) = matrix%value(place) + value*basis%value(k)*basis%value(l)
+         end do
+      end do
+   end subroutine add_entry
+
+   !> Brings the diagonal to 1, if all of it is positive.
+   pure subroutine scale_matrix(self)
+      type(gradient_solver_type), intent(inout) :: self
+      integer :: i, k
+
       associate (matrix => self%scaled)
-         self%scaling = matrix%value(matrix%row_start(2:) - 1)
+         self%scaling = matrix%value(self%diagonal)
          self%iterates = all(self%scaling > 0.0_dp)
          if (.not. self%iterates) return
          self%scaling = 1.0_dp/sqrt(self%scaling)
          do i = 1, self%order
-            do k = matrix%row_start(i), matrix%row_start(i + 1) - 2
+            do k = matrix%row_start(i), matrix%row_start(i + 1) - 1
                matrix%value(k) = self%scaling(i)*matrix%value(k)*self%scaling(matrix%column(k))
             end do
          end do
+         self%factor_bytes = storage_size(1.0_dp)/8*size(matrix%value, kind=long)
+         self%smallest_pivot = 1.0_dp
       end associate
    end subroutine scale_matrix
 
    !> Solves for a right-hand side.
-   pure subroutine iterate(self, most, part, x, is_solved)
+   pure subroutine iterate(self, most, part, small, x, is_solved)
       type(gradient_solver_type), intent(in) :: self
       integer, intent(in) :: most                    ! steps
       real(dp), intent(in) :: part                   ! of the right-hand side that may be left over
+      real(dp), intent(in) :: small                  ! norm before scaling that may be, too
       real(dp), intent(inout) :: x(self%order)       ! that, then the solution
       logical, intent(out) :: is_solved
       real(dp), dimension(self%order) :: direction, left_over, product, t
@@ -157,19 +199,20 @@ contains
       integer :: step
 
       left_over = self%scaling*self%basis%multiply_transposed(x)
-      call sweep_down(self%order, self%scaled%row_start, self%scaled%column, self%scaled%value, &
-         left_over)
+      call sweep_down(self%order, self%scaled%row_start, self%diagonal, self%scaled%column, &
+         self%scaled%value, left_over)
       direction = left_over
       square = dot_product(left_over, left_over)
-      least = part**2*square
+      least = max(part*norm2(left_over), small*minval(self%scaling))**2
       x = 0.0_dp
       do step = 1, most
          is_solved = square <= least
          if (is_solved) exit
          t = direction
-         call sweep_up(self%order, self%scaled%row_start, self%scaled%column, self%scaled%value, t)
+         call sweep_up(self%order, self%scaled%row_start, self%diagonal, self%scaled%column, &
+            self%scaled%value, t)
          product = direction - t
-         call sweep_down(self%order, self%scaled%row_start, self%scaled%column, &
+         call sweep_down(self%order, self%scaled%row_start, self%diagonal, self%scaled%column, &
             self%scaled%value, product)
          product = product + t
          length = square/dot_product(direction, product)
@@ -183,8 +226,8 @@ contains
    end subroutine iterate
 
    !> (I + L)^-1 x.
-   pure subroutine sweep_down(n, row_start, column, value, x)
-      integer, intent(in) :: n, row_start(n + 1), column(*)
+   pure subroutine sweep_down(n, row_start, diagonal, column, value, x)
+      integer, intent(in) :: n, row_start(n + 1), diagonal(n), column(*)
       real(dp), intent(in) :: value(*)
       real(dp), intent(inout) :: x(n)
       real(dp) :: total
@@ -192,8 +235,7 @@ contains
 
       do i = 1, n
          total = x(i)
-         !GCC$ unroll 4
-         do k = row_start(i), row_start(i + 1) - 2
+         do k = row_start(i), diagonal(i) - 1
             total = total - value(k)*x(column(k))
          end do
          x(i) = total
@@ -201,19 +243,19 @@ contains
    end subroutine sweep_down
 
    !> (I + L^T)^-1 x.
-   pure subroutine sweep_up(n, row_start, column, value, x)
-      integer, intent(in) :: n, row_start(n + 1), column(*)
+   pure subroutine sweep_up(n, row_start, diagonal, column, value, x)
+      integer, intent(in) :: n, row_start(n + 1), diagonal(n), column(*)
       real(dp), intent(in) :: value(*)
       real(dp), intent(inout) :: x(n)
-      real(dp) :: own
+      real(dp) :: total
       integer :: i, k
 
       do i = n, 1, -1
-         own = x(i)
-         !GCC$ unroll 4
-         do k = row_start(i), row_start(i + 1) - 2
-            x(column(k)) = x(column(k)) - value(k)*own
+         total = x(i)
+         do k = row_start(i + 1) - 1, diagonal(i) + 1, -1
+            total = total - value(k)*x(column(k))
          end do
+         x(i) = total
       end do
    end subroutine sweep_up
 
@@ -227,7 +269,7 @@ contains
       if (.not. self%iterates) then
          call self%direct%condense(rhs, condensed, welded)
       else if (present(welded)) then
-         call solve(self, rough, rhs, welded)
+         call solve(self, rough, 0.0_dp, rhs, welded)
       end if
    end subroutine condense
 
@@ -241,16 +283,31 @@ contains
       if (.not. self%iterates) then
          call self%direct%recover(on_tail, solution, rhs)
       else if (present(rhs)) then
-         call solve(self, tolerance, rhs, solution)
+         call solve(self, tolerance, 0.0_dp, rhs, solution)
       else
          solution = 0.0_dp
       end if
    end subroutine recover
 
+   !> Solves for what a guess leaves over of rates that balance.
+   subroutine improve(self, rates, rhs, solution)
+      class(gradient_solver_type), intent(in) :: self
+      real(dp), intent(in) :: rates                  !! their norm, 0 where it is not known
+      real(dp), intent(in) :: rhs(:, :)
+      real(dp), intent(out) :: solution(:, :)
+
+      if (self%iterates) then
+         call solve(self, tolerance, of_rates*rates, rhs, solution)
+      else
+         call self%direct%recover(rhs(:0, :), solution, rhs)
+      end if
+   end subroutine improve
+
    !> Solves for right-hand sides.
-   pure subroutine solve(self, part, rhs, solution)
+   pure subroutine solve(self, part, small, rhs, solution)
       type(gradient_solver_type), intent(in) :: self
       real(dp), intent(in) :: part                   ! of these that may be left over
+      real(dp), intent(in) :: small                  ! norm that may be, too
       real(dp), intent(in) :: rhs(:, :)
       real(dp), intent(out) :: solution(:, :)
       logical :: is_solved
@@ -258,7 +315,7 @@ contains
 
       solution = rhs
       do k = 1, size(rhs, 2)
-         call iterate(self, most_steps, part, solution(:, k), is_solved)
+         call iterate(self, most_steps, part, small, solution(:, k), is_solved)
       end do
    end subroutine solve
 

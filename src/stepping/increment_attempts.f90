@@ -25,7 +25,6 @@ module increment_attempts
    use simulation, only: simulation_type
    use sliding_attempts, only: check_arrivals, check_slip, compare_with_drive
    use solution_state, only: solution_state_type
-   use sparse_matrix, only: linear_combination
    use steps, only: solves_heat, solves_mechanics
    use text, only: append, to_text
    use unconstrained_bodies, only: unconstrained_now, undetermined_now
@@ -328,9 +327,11 @@ contains
             call corrections%begin(model, run%bodies, attempt%stage, attempt%before, &
                takes_past=abs(step%scheme%b(1)) > 0.0_dp)
          end if
-         if (melts) call foresee_melting(run, model, attempt)
+         ! Where the slopes of melting stand beside the matrix, fronts are foreseen by it.
+         if (melts .and. .not. run%bodies%thermal%changes) call foresee_melting(run, model, attempt)
          call reduce_heat(run, model, attempt, error)
          if (allocated(error)) return
+         if (melts .and. run%bodies%thermal%changes) call foresee_melting(run, model, attempt)
          do
             call corrections%give(attempt%data%equation, attempt%next)
             call solve_fields(run, model, attempt, error)
@@ -344,7 +345,8 @@ contains
                call renew_operators(run, model, attempt, error)
                if (allocated(error)) return
                call begin_trial(run, model, attempt)
-               call reduce_heat(run, model, attempt, error)
+               if (corrections%asks_operators .or. .not. run%bodies%thermal%changes) call &
+                  reduce_heat(run, model, attempt, error)
                if (allocated(error)) return
             end if
             call attempt%begin_again(attempt%before)
@@ -396,7 +398,7 @@ contains
          temperature = start
          change = 0.0_dp
          ! The equation of heat alone does not have that of contact points.
-         if (size(bodies%points%weight) > 0) then
+         if (.not. bodies%thermal%changes) then
             call melting%begin(model, change, attempt%before%stored*stage%size, temperature)
          else
             if (allocated(attempt%before%temperature_before)) change = stage%size/ &
@@ -407,9 +409,8 @@ contains
                equation%duration
             temperature = merge(run%loads%temperature%value, temperature, &
                run%loads%temperature%active)
-            call melting%foresee(model, linear_combination(1.0_dp, bodies%thermal%matrix, 1.0_dp, &
-               equation%left_film(bodies%capacity)), rhs, equation%duration, &
-               terms(2:size(start) + 1) - terms(:size(start)) == 1, temperature)
+            call melting%foresee(model, run%heat_reductions(run%in_use)%whole, rhs, &
+               equation%duration, terms(2:size(start) + 1) - terms(:size(start)) == 1, temperature)
          end if
          attempt%next%temperature = temperature
          call bodies%set_melting(melting%slopes(model))
@@ -440,6 +441,8 @@ contains
             associate (stage => attempt%stage)
                call data%equation%hold_heat(bodies%capacity, stage%duration, stage%temperature, &
                   attempt%before%stored)
+               if (bodies%thermal%changes .and. .not. stage%begins_step) data%stored_norm = &
+                  norm2(attempt%before%stored)
                data%friction%duration = stage%duration
                if (allocated(stage%slip_before)) data%friction%slip_before = stage%slip_before
             end associate
@@ -451,7 +454,7 @@ contains
       end associate
    end subroutine begin_trial
 
-   !> Reduces heat as the equation of a stage asks for.
+   !> Reduces heat as the equation of a stage asks for; without melting where that stands beside it.
    !> Errors: as reduce_heat.
    subroutine reduce_heat(run, model, attempt, error)
       type(simulation_type), intent(inout) :: run
@@ -459,8 +462,15 @@ contains
       type(attempt_type), intent(in) :: attempt
       type(error_type), allocatable, intent(out) :: error
 
-      if (solves_heat(model%steps(run%control%step)%analysis)) call run%reduce_heat(model, &
-         attempt%data%equation%left_film(run%bodies%capacity), error)
+      real(dp), allocatable :: slopes(:)
+
+      if (.not. solves_heat(model%steps(run%control%step)%analysis)) return
+      associate (bodies => run%bodies)
+         if (allocated(bodies%melting)) slopes = bodies%melting
+         if (bodies%thermal%changes .and. allocated(slopes)) call bodies%set_melting(0.0_dp*slopes)
+         call run%reduce_heat(model, attempt%data%equation%left_film(bodies%capacity), error)
+         if (allocated(slopes)) call bodies%set_melting(slopes)
+      end associate
    end subroutine reduce_heat
 
    !> Solves the fields of a stage with the present corrections of its operators.
@@ -475,6 +485,10 @@ contains
       associate (step => model%steps(run%control%step), bodies => run%bodies, &
          data => attempt%data, workspace => attempt%workspace, next => attempt%next)
          workspace%record%increment = attempt%record%increment
+         if (bodies%thermal%changes .and. data%equation%duration > 0.0_dp) call &
+            run%heat_reductions(run%in_use)%add_diagonal(bodies%thermal, bodies%melting/ &
+            data%equation%duration, error)
+         if (allocated(error)) return
          call solve_points(bodies, run%heat_reductions(run%in_use), run%loads, &
             attempt%trial_type, error)
          attempt%record%solution_report_type = workspace%record

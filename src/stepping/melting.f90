@@ -27,6 +27,7 @@ module melting
    real(dp), parameter :: rounding = 1.0e-13_dp
 
    integer, parameter :: most_sweeps = 24        !! that foresee a front
+   integer, parameter :: most_elements = 2       !! that a front passes in a stage as foreseen
    integer, parameter :: quiet_sweeps = 4        !! in which no node enters or leaves an interval
    real(dp), parameter :: resting = 1.0e-4_dp    !! part of a node's latent heat that moves none
 
@@ -36,6 +37,7 @@ module melting
       integer :: material = 0            !! index
       integer :: row = 0                 !! latent heat that T' is in the interval of, or 0
       real(dp) :: at = 0.0_dp            !! T' [temperature]
+      logical :: at_front = .true.       !! whether a front may have been there since the start
       real(dp) :: volume = 0.0_dp        !! its part of the elements of the material [length^3]
    end type melting_node_type
 
@@ -96,18 +98,22 @@ contains
       real(dp), intent(in) :: change(:)                    !! (nodes) without melting [temperature]
       real(dp), intent(in) :: heat(:)                        !! (nodes) gained besides [energy]
       real(dp), intent(inout) :: temperature(:)              !! (nodes) at its start, then foreseen
-      real(dp) :: start(size(temperature))
+      real(dp) :: latent, start(size(temperature))
+      logical :: is_foreseen
       integer :: i
 
       start = temperature
+      is_foreseen = any(abs(change) > 0.0_dp)
       temperature = start + change
       do i = 1, size(self%nodes)
          associate (node => self%nodes(i))
             associate (material => model%materials(node%material), there => temperature(node%node))
+               latent = latent_content(material, start(node%node))
                call melted_to(material, heat_capacity(material), there + heat(node%node)/( &
-                  heat_capacity(material)*node%volume), latent_content(material, &
-                  start(node%node)), node%at, node%row)
+                  heat_capacity(material)*node%volume), latent, node%at, node%row)
                there = node%at
+               node%at_front = node%row > 0 .or. .not. is_foreseen .or. abs(latent - &
+                  latent_content(material, there)) > 0.0_dp
             end associate
          end associate
       end do
@@ -115,7 +121,8 @@ contains
 
    !> Foresees T' at the end of a stage by sweeps to and fro over the equation of heat without
    !> melting, which solve the row of a node together with its latent heat (Gauss and Seidel). Nodes
-   !> whose neighbours stay rest. They end when none has entered or left an interval for some.
+   !> whose neighbours stay rest, and those far from where fronts may have been. They end when none
+   !> has entered or left an interval for some.
    pure subroutine foresee(self, model, matrix, rhs, duration, moves, temperature)
       class(melting_type), intent(inout) :: self
       type(model_type), intent(in) :: model
@@ -125,25 +132,37 @@ contains
       logical, intent(in) :: moves(:)                        !! (nodes) those that are solved for
       real(dp), intent(inout) :: temperature(:)              !! (nodes) from begin, then foreseen
       real(dp) :: held(size(rhs)), left_over, own, small(size(rhs))
-      logical :: waits(size(rhs))
+      logical :: near(size(rhs), 0:most_elements), waits(size(rhs))
+      integer, allocatable :: rows(:)
       integer :: at(size(rhs)), i, k, l, moved, within, sweep
 
       at = 0
       small = 0.0_dp
+      near = .false.
       held = self%contents(model, temperature)/duration
       do k = 1, size(self%nodes)
          associate (node => self%nodes(k))
             at(node%node) = k
+            near(node%node, 0) = node%at_front
             small(node%node) = resting*node%volume*sum(model%materials(node%material)%melting% &
                content)/duration
          end associate
       end do
-      waits = moves
+      do l = 1, most_elements
+         near(:, l) = near(:, l - 1)
+         do i = 1, size(rhs)
+            if (near(i, l - 1)) near(matrix%column(matrix%row_start(i): &
+               matrix%row_start(i + 1) - 1), l) = .true.
+         end do
+      end do
+      rows = pack([(i, i=1, size(rhs))], near(:, most_elements) .and. moves)
+      waits = .false.
+      waits(rows) = .true.
       moved = 0
       do sweep = 1, most_sweeps
          if (sweep - moved > quiet_sweeps) exit
-         do k = 1, size(rhs)
-            i = merge(k, size(rhs) + 1 - k, modulo(sweep, 2) == 1)
+         do k = 1, size(rows)
+            i = rows(merge(k, size(rows) + 1 - k, modulo(sweep, 2) == 1))
             if (.not. waits(i)) cycle
             waits(i) = .false.
             left_over = rhs(i) - held(i)
@@ -153,9 +172,7 @@ contains
                if (matrix%column(l) == i) own = matrix%value(l)
             end do
             if (abs(left_over) <= small(i)) cycle
-            associate (row => matrix%column(matrix%row_start(i):matrix%row_start(i + 1) - 1))
-               waits(row) = moves(row)
-            end associate
+            waits(matrix%column(matrix%row_start(i):matrix%row_start(i + 1) - 1)) = .true.
             waits(i) = .false.
             left_over = left_over + held(i) + own*temperature(i)
             temperature(i) = left_over/own

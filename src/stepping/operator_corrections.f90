@@ -510,9 +510,10 @@ contains
       if (.not. self%stage%stores_heat) return
       melting = 0.0_dp
       if (allocated(bodies%melting)) melting = bodies%melting*(temperature - self%stage%temperature)
-      if (allocated(self%stage%content)) values(:n) = true_contents(self, model, temperature) - &
-         self%stage%content - merge(bodies%capacity%multiply(temperature - &
+      if (any(self%follows)) melting = merge(bodies%capacity%multiply(temperature - &
          self%stage%temperature), melting, self%follows)
+      if (allocated(self%stage%content)) values(:n) = true_contents(self, model, temperature) - &
+         self%stage%content - melting
       if (allocated(self%strain_before)) values(:n) = values(:n) + bodies%dilatation%taken_up( &
          bodies%thermal_load, displacement, temperature) - self%strain_before
       if (self%heats .and. self%stage%strains) values(:n) = values(:n) - self%inelastic_heat(model)
@@ -693,9 +694,10 @@ contains
             ! Inelastic strains may be far larger than the elastic ones.
             force = max(self%largest_force, least(2))
          else
-            force = max(maxval(abs(bodies%evened(self%values(2*n + 1:)))), least(2))
+            force = least(2)
             if (allocated(bodies%mechanical%matrix%value)) force = max(force, maxval(abs( &
-               bodies%evened(bodies%mechanical%matrix%multiply(next%displacement)))))
+               bodies%evened(self%values(2*n + 1:)))), maxval(abs(bodies%evened( &
+               bodies%mechanical%matrix%multiply(next%displacement)))))
          end if
          scale(:2*n) = max(heat, tiny(heat))
          scale(2*n + 1:) = max(force, tiny(force))
