@@ -76,6 +76,7 @@ contains
       type(model_type), intent(in) :: model
 
       reason = merge(of_checks, of_full_checks, model%uncertainty == uncertainty_full)
+      if (model%uncertainty == uncertainty_no) reason = errors_off
    end function reason_without_check
 
    !> Whether finer meshes and shorter increments leave a reason as it is.

@@ -50,12 +50,13 @@ module command_line
    end type command_type
 
    !> Lines of --help
-   character(*), parameter :: usage(49) = [character(88) :: &
+   character(*), parameter :: usage(50) = [character(88) :: &
       'usage: thercon run DECK... [--out DIR] [--jobs N] [--width N] [--set NAME=VALUE]', &
       '                           [--quiet] [--json] [--accuracy P%] [--limit SECONDS]', &
       '                           [--errors last|full|no] [--restart RESULT[@TIME]] [--resume]', &
       '                           [--table VALUES.csv]', &
       '       thercon check DECK... [--width N] [--set NAME=VALUE] [--quiet] [--json]', &
+      '                             [--accuracy P%] [--errors last|full|no] [--restart RESULT]', &
       '       thercon trade DECK [--out DIR] [--width N] [--set NAME=VALUE] [--quiet]', &
       '                          [--limit SECONDS] [--jobs N]', &
       '       thercon --help | --version | --keywords [KEYWORD]', '', &
@@ -71,12 +72,12 @@ module command_line
       '  --set NAME=VALUE   override the value of a *PARAMETER of the deck', &
       '  --quiet            print errors and warnings only', &
       '  --json             run, check: print one JSON document (docs/results.md); one deck', &
-      '  --accuracy P%      run: refine the mesh and shorten the increments until the', &
+      '  --accuracy P%      run, check: refine the mesh and shorten increments until the', &
       '                     uncertainties of force, heat rate, peak pressure, edge of contact', &
       '                     are within P per cent; replaces *ACCURACY; with names only', &
       '                     those: force=1%,heat=2% (also pressure, edge, shear, stick)', &
-      '  --errors last      run: numerical uncertainties at the ends of steps (last), of all', &
-      '                     numbers at all times (full), or none (no); as *OPTIONS, ERRORS=', &
+      '  --errors last      run, check: numerical uncertainties at the ends of steps (last), of', &
+      '                     all numbers at all times (full), or none (no); as ERRORS=', &
       '  --restart RESULT   go on from the last state that *RESTART, WRITE kept in this result,', &
       '                     or with RESULT@TIME from that at a time', &
       '  --resume           run: skip decks whose results are finished; go on with others from', &
@@ -227,11 +228,9 @@ contains
          end if
          return
       end select
-      if (command%action == command_check .and. word == '--out' .or. command%action == &
-         command_check .and. word == '--jobs' .or. command%action /= command_run .and. any(word == &
-         [character(10) :: '--accuracy', '--errors', '--table']) .or. command%action == &
-         command_trade .and. word == '--restart' .or. command%action == command_check .and. word &
-         == '--limit') then
+      if (command%action == command_check .and. any(word == [character(7) :: '--out', '--jobs', &
+         '--limit', '--table']) .or. command%action == command_trade .and. any(word == &
+         [character(10) :: '--accuracy', '--errors', '--table', '--restart'])) then
          call set_error(error, status_deck, 'option '//word//' does not go with '//argument(1))
          return
       end if

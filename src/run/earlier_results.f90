@@ -112,7 +112,7 @@ contains
             ', not of '//version//': solve its deck anew')
       else if (self%settings /= settings) then
          call set_error(error, status_deck, '"'//self%path//'" was solved with '// &
-            or_none(self%settings)//', not with '//or_none(settings)//': give the same')
+            or_none(self%settings)//', this run has '//or_none(settings)//': give the same')
       end if
    end subroutine check
 
@@ -121,7 +121,7 @@ contains
       character(:), allocatable :: words
 
       words = settings
-      if (settings == '') words = 'no --set and no --accuracy'
+      if (settings == '') words = 'no --set, --accuracy or --errors'
    end function or_none
 
    !> The first card in which its deck differs from another one, comments aside.

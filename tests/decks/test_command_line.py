@@ -274,7 +274,6 @@ def test_errors_says_which_numbers_have_an_uncertainty_whatever_the_deck_says(tm
 
 @pytest.mark.parametrize(("arguments", "words"), [
     (("run", CYLINDER, "--errors", "some"), "option --errors needs last, full or no, not some"),
-    (("check", CYLINDER, "--errors", "full"), "option --errors does not go with check"),
     (("trade", CYLINDER, "--errors", "full"), "option --errors does not go with trade")])
 def test_errors_is_refused_where_it_says_nothing(tmp_path, arguments, words):
     process = run(*arguments, folder=tmp_path)

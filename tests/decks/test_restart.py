@@ -341,6 +341,16 @@ def test_results_of_other_decks_meshes_options_and_versions_are_refused(cycling,
     assert not (tmp_path / "thermal_cycling.lst").exists()
 
 
+def test_a_check_takes_the_options_that_a_run_goes_on_with(cycling, tmp_path):
+    deck = cycling[0]
+    full = ("--errors", "full")
+    assert run("run", "--quiet", deck, *full, "--out", tmp_path).returncode in (0, 4)
+    again = ("--restart", tmp_path / "thermal_cycling.vtkhdf")
+    said = run("check", deck, *again).stderr
+    assert 'was solved with --errors full, this run has no --set, --accuracy or --errors: give' in said
+    assert run("check", deck, *again, *full).returncode == 0
+
+
 def test_places_that_a_result_does_not_keep_are_refused(cycling, tmp_path):
     deck, result = cycling
     at = float(kept(result)[2])

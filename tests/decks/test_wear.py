@@ -205,7 +205,7 @@ def test_its_uncertainty_holds_the_exact_volume(tmp_path):
 
 
 @pytest.mark.parametrize(("errors", "reason"), [("LAST", "*VERIFY; ERRORS=FULL"),
-                                                ("FULL", "only for *VERIFY")])
+                                                ("FULL", "only for *VERIFY"), ("NO", "ERRORS=NO")])
 def test_without_a_check_it_says_what_estimates_it(tmp_path, errors, reason):
     """The master does not wear."""
     deck = write(tmp_path / "deck.inp", [f'*OPTIONS, ERRORS={errors}, UNITS="mm MPa W C"',

@@ -69,7 +69,8 @@ def way(result, numbers):
         lengths, before, _ = dijkstra(links, indices=start, return_predecessors=True, min_only=True)
         leg = [there[np.argmin(lengths[there])]]
         if np.isinf(lengths[leg[0]]):
-            raise UserError(f"{result.path}: no outline leads to node {number} from the one before")
+            raise UserError(f"{result.path}: node {number} is on another outline than the node before it: "
+                            "a way stays on that of one body")
         while leg[-1] not in start:
             leg.append(before[leg[-1]])
         new = leg[::-1][1 if points else 0:]

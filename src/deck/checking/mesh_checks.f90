@@ -232,9 +232,22 @@ contains
       integer, intent(in) :: e
       character(*), intent(in) :: where
       character(:), allocatable :: message
+      integer :: i, k
 
       message = 'the Jacobian of element '//to_text(mesh%element_number(e))// &
-         ' is not positive at '//where//': write its corners anticlockwise'
+         ' is not positive at '//where//': '
+      associate (nodes => mesh%element_nodes(:element_node_count(mesh%element_kind(e)), e))
+         do i = 1, size(nodes)
+            do k = i + 1, size(nodes)
+               if (norm2(mesh%coordinates(:, nodes(i)) - mesh%coordinates(:, nodes(k))) > 0.0_dp) &
+                  cycle
+               message = message//'its nodes '//to_text(mesh%node_number(nodes(i)))//' and '// &
+                  to_text(mesh%node_number(nodes(k)))//' are at the same place'
+               return
+            end do
+         end do
+      end associate
+      message = message//'write its corners anticlockwise'
       if (side_node_count(mesh%element_kind(e)) == 3) message = message// &
          ', then its midside nodes, each near the middle of its side'
       message = message//', or correct their coordinates'
