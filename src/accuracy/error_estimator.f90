@@ -103,9 +103,12 @@ contains
          if (.not. (self%is_full .or. record%last_of_step)) return
          record%uncertainties = no_uncertainty(values, reason_of_run(model))
       end associate
-      allocate (record%body_uncertainties(merge(model%mesh%body_count, 0, self%is_on)))
-      if (.not. self%is_on) return
+      allocate (record%body_uncertainties(model%mesh%body_count))
       call found%find(model, simulation, record)
+      if (.not. self%is_on) then
+         call judge_bodies(self, model, simulation, found, record)
+         return
+      end if
       call solve_finer(self, model, simulation, record, found)
       self%iteration = left_by_iteration(record)
       call judge_interfaces(self, model, simulation, record)
@@ -241,9 +244,10 @@ contains
       integer :: b, q
 
       change = ieee_value(1.0_dp, ieee_quiet_nan)
-      if (.not. allocated(self%lost)) change = found%changes(self%divided, model%mesh, &
-         simulation, record%fields)
+      if (self%is_on .and. .not. allocated(self%lost)) change = found%changes(self%divided, &
+         model%mesh, simulation, record%fields)
       holds = .false.
+      if (.not. self%is_on) holds(reason_of_run(model)) = .true.
       holds(slides_far) = any(record%contacts%slide%point > 0)
       do b = 1, model%mesh%body_count
          associate (own => record%body_uncertainties(b))

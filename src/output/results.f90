@@ -286,7 +286,7 @@ contains
          do i = 1, n
             call self%tables(4 + n + i)%append(record%uncertainties(:, i))
          end do
-         do i = 1, size(record%body_uncertainties)
+         do i = 1, merge(size(record%body_uncertainties), 0, reason_of_run(model) == no_reason)
             call self%tables(4 + 2*n + i)%append(record%body_uncertainties(i)%maxima)
          end do
          if (allocated(record%history_uncertainties)) call self%tables(size(self%tables))% &

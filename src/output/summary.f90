@@ -289,10 +289,10 @@ contains
          b = maxloc(self%last%inelastic_strain(i, :), dim=1)
          if (self%last%inelastic_strain(i, b) <= 0.0_dp) cycle
          reason = reason_inside_step(model)
-         if (reason == no_reason .and. allocated(self%last%body_uncertainties)) then
+         if (allocated(self%last%body_uncertainties)) then
             if (.not. ieee_is_nan( &
                self%last%body_uncertainties(b)%maxima(first_strain + i)%value)) cycle
-            reason = at_corner
+            if (reason == no_reason) reason = at_corner
          end if
          call append(lines, summary_line(strain_names(i), self%last%inelastic_strain(i, b), &
             mark_of(reason), '', 'body '//to_text(b)//', at integration points'))

@@ -266,8 +266,7 @@ def test_nothing_is_written_when_nothing_is_requested(tmp_path):
 
 
 @pytest.mark.parametrize("arguments", [
-    ("run", HERTZ, "--accuracy"), ("check", HERTZ, "--accuracy", "1%"),
-    ("trade", HERTZ, "--accuracy", "1%")])
+    ("run", HERTZ, "--accuracy"), ("trade", HERTZ, "--accuracy", "1%")])
 def test_options_that_say_nothing_are_refused(tmp_path, arguments):
     process = run(*arguments, folder=tmp_path)
     assert process.returncode == 1 and "--accuracy" in process.stderr
