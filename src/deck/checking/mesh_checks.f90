@@ -239,8 +239,9 @@ contains
       associate (nodes => mesh%element_nodes(:element_node_count(mesh%element_kind(e)), e))
          do i = 1, size(nodes)
             do k = i + 1, size(nodes)
-               if (norm2(mesh%coordinates(:, nodes(i)) - mesh%coordinates(:, nodes(k))) > 0.0_dp) &
-                  cycle
+               associate (way => mesh%coordinates(:, nodes(k)) - mesh%coordinates(:, nodes(i)))
+                  if (norm2(way) > 0.0_dp) cycle
+               end associate
                message = message//'its nodes '//to_text(mesh%node_number(nodes(i)))//' and '// &
                   to_text(mesh%node_number(nodes(k)))//' are at the same place'
                return
