@@ -32,7 +32,7 @@ module requested_tables
       integer :: component = 0
       character(key_length) :: head = ''       !! in the listing, the name that *VERIFY has
       character(:), allocatable :: name        !! in words, such as displacement_x
-      character(15) :: unit = '-'              !! as of quantity_type
+      character(32) :: unit = '-'              !! as of quantity_type
       !> (rows), one of a total; unallocated where the increment does not have the quantity
       real(dp), allocatable :: values(:)
    end type table_column_type
