@@ -298,7 +298,7 @@ contains
          q = findloc(print_keys, keys(k), dim=1)
          if (q == 0) cycle
          if (size(point_values(trim(keys(k))//trim(axes_of(components(q), 1)), fields, &
-            [(i, i=1, rows)])) /= rows) absent = [absent, print_keys(q)]
+            [(i, i=1, rows)])) /= rows) absent = [character(key_length) :: absent, print_keys(q)]
       end do
    end function absent_of
 
