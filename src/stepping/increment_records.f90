@@ -318,10 +318,11 @@ contains
       type(contact_record_type), intent(inout) :: record   ! has states and gaps
       type(contact_profile_type) :: profile
       real(dp) :: overlap(size(closed))                    ! if its nodes yielded alone [length]
+      integer :: last
 
-      associate (last => first + size(closed) - 1, friction => bodies%laws%friction(first), &
-         forces => contact%force(first:first + size(closed) - 1), &
-         shear_forces => contact%shear_force(first:first + size(closed) - 1))
+      last = first + size(closed) - 1
+      associate (friction => bodies%laws%friction(first), &
+         forces => contact%force(first:last), shear_forces => contact%shear_force(first:last))
          record%pressure = pressures(points, forces, closed)
          record%shear = shears(points, shear_forces, closed, friction, record%pressure)
          record%normal_force = sum(forces)
