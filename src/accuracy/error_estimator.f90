@@ -247,15 +247,16 @@ contains
       if (self%is_on .and. .not. allocated(self%lost)) change = found%changes(self%divided, &
          model%mesh, simulation, record%fields)
       holds = .false.
-      if (.not. self%is_on) holds(reason_of_run(model)) = .true.
       holds(slides_far) = any(record%contacts%slide%point > 0)
       do b = 1, model%mesh%body_count
          associate (own => record%body_uncertainties(b))
             own%node = found%node(:, b)
             own%corners = pack(found%corners, model%mesh%node_body(found%corners) == b)
-            allocate (own%maxima(size(maxima)))
+            own%maxima = no_uncertainty(found%value(:, b), reason_of_run(model))
+            if (.not. self%is_on) cycle
             do q = 1, size(maxima)
-               holds(of_path) = .not. self%is_full .and. ieee_is_nan(change(q, b))
+               holds(of_path) = .not. (self%is_full .or. allocated(self%lost)) .and. &
+                  ieee_is_nan(change(q, b))
                own%maxima(q) = judged(self, maxima(q), found%value(q, b), change(q, b), holds, &
                   nothing)
             end do

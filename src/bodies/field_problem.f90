@@ -15,7 +15,7 @@
 module field_problem
    use body_pieces, only: body_division_type, body_pieces_type
    use controls, only: solver_mumps, solver_skyline
-   use errors, only: check_finite, error_type, status_deck
+   use errors, only: check_finite, error_type, set_error, status_deck, status_internal
    use gradient_solver, only: gradient_solver_type
    use kinds, only: dp, long
    use linear_constraints, only: linear_constraints_type
@@ -267,6 +267,8 @@ contains
       type is (gradient_solver_type)
          call solver%add(problem%map%transform(part, 0.0_dp*problem%map%link_stiffness( &
             problem%matrix)), error)
+      class default
+         call set_error(error, status_internal, 'a diagonal stands beside a matrix with factors')
       end select
       self%factored = self%factored + 1
       self%is_factored = .not. allocated(error)
@@ -498,6 +500,8 @@ contains
             select type (solver => self%solver)
             type is (gradient_solver_type)
                call solver%improve(load%rates, rest, solution)
+            class default
+               call solver%recover(rest(:0, :), solution, rest)
             end select
             welded = problem%map%expand(first + solution(:, 1), load%given)
          end associate

@@ -154,7 +154,7 @@ contains
       end subroutine put_plain
    end subroutine put_fields
 
-   !> Maxima of the bodies; none where nothing is estimated.
+   !> Maxima of the bodies at the end of a step, with ERRORS=FULL of any increment.
    subroutine put_bodies(document, row, summary, model)
       type(json_type), intent(inout) :: document
       type(result_row_type), intent(inout) :: row

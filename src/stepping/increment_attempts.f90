@@ -461,7 +461,6 @@ contains
       type(model_type), intent(in) :: model
       type(attempt_type), intent(in) :: attempt
       type(error_type), allocatable, intent(out) :: error
-
       real(dp), allocatable :: slopes(:)
 
       if (.not. solves_heat(model%steps(run%control%step)%analysis)) return

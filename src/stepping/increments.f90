@@ -48,7 +48,7 @@ contains
             counted(step%max_increments, 'increment')//', at '//to_text(control%step_time)// &
             ' of its period '//to_text(step%period))
          if (allocated(error) .and. adapts_increments(step)) error%message = error%message// &
-            '; a larger LOCAL ERROR= takes fewer'
+            '; a larger LOCAL ERROR=, CETOL= or DELTMX= takes fewer'
       end associate
       if (allocated(error)) return
       call run%reduce(model, error)

@@ -500,7 +500,7 @@ contains
       type(reduced_bodies_type), intent(in) :: bodies
       real(dp), intent(in) :: temperature(:), displacement(:)
       real(dp), allocatable :: values(:)                     ! (4 nodes)
-      real(dp) :: melting(size(temperature))                 ! what C has of it
+      real(dp) :: of_capacity(size(temperature))   ! what C has of it, melting or not [energy]
       integer :: n
 
       n = size(temperature)
@@ -508,12 +508,13 @@ contains
       values(n + 1:2*n) = heat_beyond(self, model, bodies, temperature)
       values(2*n + 1:) = forces_beyond(self, model, bodies, temperature, displacement)
       if (.not. self%stage%stores_heat) return
-      melting = 0.0_dp
-      if (allocated(bodies%melting)) melting = bodies%melting*(temperature - self%stage%temperature)
-      if (any(self%follows)) melting = merge(bodies%capacity%multiply(temperature - &
-         self%stage%temperature), melting, self%follows)
+      of_capacity = 0.0_dp
+      if (allocated(bodies%melting)) of_capacity = bodies%melting*(temperature - &
+         self%stage%temperature)
+      if (any(self%follows)) of_capacity = merge(bodies%capacity%multiply(temperature - &
+         self%stage%temperature), of_capacity, self%follows)
       if (allocated(self%stage%content)) values(:n) = true_contents(self, model, temperature) - &
-         self%stage%content - melting
+         self%stage%content - of_capacity
       if (allocated(self%strain_before)) values(:n) = values(:n) + bodies%dilatation%taken_up( &
          bodies%thermal_load, displacement, temperature) - self%strain_before
       if (self%heats .and. self%stage%strains) values(:n) = values(:n) - self%inelastic_heat(model)

@@ -63,6 +63,7 @@ def test_a_reason_stands_where_there_is_no_uncertainty(tmp_path):
     document, _ = document_of("run", RODS, "--out", tmp_path, "--errors", "no")
     force = document["summary"]["interfaces"]["GAP"]["normal_force"]
     assert force["no_estimate"] == "ERRORS=NO" and "uncertainty" not in force
+    assert len(document["summary"]["bodies"]) == 2
     for body in document["summary"]["bodies"]:
         assert body["temperature"]["no_estimate"] == body["von_mises"]["no_estimate"] == "ERRORS=NO"
 
