@@ -177,14 +177,12 @@ contains
          do i = 1, size(interfaces)
             call print_uncertainties(self%page, interfaces(i), record%uncertainties(:, i))
          end do
-      end if
-      if (allocated(record%body_uncertainties)) then
          do i = 1, size(record%body_uncertainties)
             call print_maxima(self%page, model%mesh, i, record%body_uncertainties(i))
          end do
+         if (allocated(record%history_uncertainties)) call print_history_uncertainties(self%page, &
+            record%history_uncertainties)
       end if
-      if (allocated(record%history_uncertainties)) call print_history_uncertainties(self%page, &
-         record%history_uncertainties)
       call print_requested(self%page, tables, model)
       self%summary%printed = self%summary%printed + sum([(merge(size(tables(i)%member), 0, &
          size(tables(i)%columns) > 0 .and. .not. tables(i)%has_uncertainties), i=1, size(tables))])

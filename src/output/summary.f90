@@ -335,7 +335,8 @@ contains
       end do
       associate (cornered => count([(size(errors(b)%corners) > 0, b=1, size(errors))]))
          if (cornered > 0) call append(lines, '  '//to_text(cornered)//' of them with singular '// &
-            'corners, where stress has no estimate; the listing names them')
+            'corners, where stress has no estimate'//trim(merge('; the listing names them', &
+            '                        ', reason_of_run(model) == no_reason)))
       end associate
    end subroutine add_largest_maxima
 

@@ -13,8 +13,8 @@ from maxima_decks import FAMILIES, KINDS
 
 TITLE = "Largest stress and temperature"
 TEXT = """
-Every run reports the largest von Mises stress and the largest temperature of each body with their
-uncertainties, and with `ERRORS=FULL` the largest plastic and creep strain. The same rule holds for
+Every run reports the largest von Mises stress, temperature, plastic and creep strain of each body;
+these strains have uncertainties with `ERRORS=FULL` alone. The same rule holds for
 stresses and temperatures at nodes that `*VERIFY` names.
 
 Stress is sought in elements without singular corners, where it grows without limit as the mesh is
