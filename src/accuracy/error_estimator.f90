@@ -103,12 +103,9 @@ contains
          if (.not. (self%is_full .or. record%last_of_step)) return
          record%uncertainties = no_uncertainty(values, reason_of_run(model))
       end associate
-      allocate (record%body_uncertainties(model%mesh%body_count))
       call found%find(model, simulation, record)
-      if (.not. self%is_on) then
-         call judge_bodies(self, model, simulation, found, record)
-         return
-      end if
+      call begin_bodies(model, found, record)
+      if (.not. self%is_on) return
       call solve_finer(self, model, simulation, record, found)
       self%iteration = left_by_iteration(record)
       call judge_interfaces(self, model, simulation, record)
@@ -232,6 +229,23 @@ contains
       end do
    end subroutine judge_interfaces
 
+   !> The maxima of bodies, without uncertainties.
+   subroutine begin_bodies(model, found, record)
+      type(model_type), intent(in) :: model
+      type(body_maxima_type), intent(in) :: found
+      type(increment_record_type), intent(inout) :: record
+      integer :: b
+
+      allocate (record%body_uncertainties(model%mesh%body_count))
+      do b = 1, model%mesh%body_count
+         associate (own => record%body_uncertainties(b))
+            own%node = found%node(:, b)
+            own%corners = pack(found%corners, model%mesh%node_body(found%corners) == b)
+            own%maxima = no_uncertainty(found%value(:, b), reason_of_run(model))
+         end associate
+      end do
+   end subroutine begin_bodies
+
    !> Uncertainties of the maxima of bodies.
    subroutine judge_bodies(self, model, simulation, found, record)
       type(error_estimator_type), intent(in) :: self
@@ -244,23 +258,17 @@ contains
       integer :: b, q
 
       change = ieee_value(1.0_dp, ieee_quiet_nan)
-      if (self%is_on .and. .not. allocated(self%lost)) change = found%changes(self%divided, &
-         model%mesh, simulation, record%fields)
+      if (.not. allocated(self%lost)) change = found%changes(self%divided, model%mesh, &
+         simulation, record%fields)
       holds = .false.
       holds(slides_far) = any(record%contacts%slide%point > 0)
       do b = 1, model%mesh%body_count
-         associate (own => record%body_uncertainties(b))
-            own%node = found%node(:, b)
-            own%corners = pack(found%corners, model%mesh%node_body(found%corners) == b)
-            own%maxima = no_uncertainty(found%value(:, b), reason_of_run(model))
-            if (.not. self%is_on) cycle
-            do q = 1, size(maxima)
-               holds(of_path) = .not. (self%is_full .or. allocated(self%lost)) .and. &
-                  ieee_is_nan(change(q, b))
-               own%maxima(q) = judged(self, maxima(q), found%value(q, b), change(q, b), holds, &
-                  nothing)
-            end do
-         end associate
+         do q = 1, size(maxima)
+            holds(of_path) = .not. (self%is_full .or. allocated(self%lost)) .and. &
+               ieee_is_nan(change(q, b))
+            record%body_uncertainties(b)%maxima(q) = judged(self, maxima(q), found%value(q, b), &
+               change(q, b), holds, nothing)
+         end do
       end do
    end subroutine judge_bodies
 

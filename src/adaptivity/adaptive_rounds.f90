@@ -109,7 +109,7 @@ contains
       type(error_estimator_type), allocatable :: estimator
       type(contact_points_type), allocatable :: interfaces(:)
       type(round_indicators_type) :: indicators
-      real(dp) :: since
+      real(dp) :: began, estimating, in_stages
 
       allocate (estimator)
       call estimator%start(model)
@@ -118,13 +118,16 @@ contains
       call indicators%start(model)
       do while (.not. (allocated(error) .or. simulation%finished(model)))
          call estimator%begin_increment(simulation)
-         since = wall_seconds() - (simulation%seconds%assemble + simulation%seconds%reduce + &
-            simulation%seconds%recover)
+         began = wall_seconds()
+         estimating = 0.0_dp
+         associate (seconds => simulation%seconds)
+            in_stages = seconds%assemble + seconds%reduce + seconds%recover
+         end associate
          call advance(simulation, model, record, error)
          if (.not. allocated(error)) then
-            since = since - wall_seconds()
+            estimating = wall_seconds()
             call estimator%end_increment(model, simulation, record)
-            since = since + wall_seconds()
+            estimating = wall_seconds() - estimating
             if (self%accuracy%is_on) then
                call simulation%bodies%views(interfaces)
                call self%accuracy%follow(interfaces, record)
@@ -140,8 +143,8 @@ contains
          end if
          ! What is in no other stage.
          associate (seconds => simulation%seconds)
-            seconds%iterate = seconds%iterate + (wall_seconds() - since - (seconds%assemble + &
-               seconds%reduce + seconds%recover))
+            seconds%iterate = seconds%iterate + (wall_seconds() - began - estimating - &
+               (seconds%assemble + seconds%reduce + seconds%recover - in_stages))
          end associate
          call taker%take(simulation, record, error)
       end do

@@ -292,9 +292,9 @@ contains
    !> Solves for what a guess leaves over of rates that balance.
    subroutine improve(self, rates, rhs, solution)
       class(gradient_solver_type), intent(in) :: self
-      real(dp), intent(in) :: rates                  !! their norm, 0 where it is not known
-      real(dp), intent(in) :: rhs(:, :)
-      real(dp), intent(out) :: solution(:, :)
+      real(dp), intent(in) :: rates           !! their norm, 0 where it is not known
+      real(dp), intent(in) :: rhs(:, :)       !! (order, columns), in the unit of the rates
+      real(dp), intent(out) :: solution(:, :) !! (order, columns)
 
       if (self%iterates) then
          call solve(self, tolerance, of_rates*rates, rhs, solution)
