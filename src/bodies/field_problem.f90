@@ -474,11 +474,13 @@ contains
 
    !> Condenses a load on the tail. What earlier loads say of it is taken from them: steps that ramp
    !> their loads solve for a first one only.
-   subroutine condense_load(self, problem, load, known, welded, inside)
+   !> Error: status_no_convergence, as of gradients.
+   subroutine condense_load(self, problem, load, known, error, welded, inside)
       class(field_reduction_type), intent(in) :: self
       type(field_problem_type), intent(in) :: problem     !! that it is of
       type(field_load_type), intent(inout) :: load        !! receives what is condensed
       type(solved_loads_type), intent(inout) :: known     !! earlier loads of the field
+      type(error_type), allocatable, intent(out) :: error
       !> (dofs) values where the tail is zero; where the matrix changes, at first a guess
       real(dp), intent(inout), optional :: welded(:)
       !> (dofs) as from condense_inside: values inside of pieces are these, and need no solution
@@ -499,7 +501,7 @@ contains
                self%diagonal*welded)
             select type (solver => self%solver)
             type is (gradient_solver_type)
-               call solver%improve(load%rates, rest, solution)
+               call solver%improve(load%rates, rest, solution, error)
             class default
                call solver%recover(rest(:0, :), solution, rest)
             end select

@@ -76,7 +76,7 @@ contains
    end subroutine solve_points
 
    !> Loads of an increment in which heat and mechanics are coupled, as solve_points has them.
-   !> Error: they overflow.
+   !> Errors: they overflow; as condense_load.
    subroutine load_points(bodies, heat, loads, trial, error)
       type(reduced_bodies_type), intent(in) :: bodies
       type(heat_reduction_type), intent(in) :: heat
@@ -92,7 +92,7 @@ contains
    end subroutine load_points
 
    !> Heat load of an increment, condensed, and the temperatures that belong to welded contacts.
-   !> Error: they overflow.
+   !> Errors: they overflow; as condense_load.
    subroutine load_heat(bodies, heat, loads, trial, error)
       type(reduced_bodies_type), intent(in) :: bodies
       type(heat_reduction_type), intent(in) :: heat
@@ -112,8 +112,9 @@ contains
             given, trial%known(inside_heat), left, inside)
          data%heat = heat%load_of(bodies%thermal, sources, given, left)
          data%heat%rates = data%stored_norm
-         call heat%condense_load(bodies%thermal, data%heat, trial%known(of_heat), temperature, &
-            inside)
+         call heat%condense_load(bodies%thermal, data%heat, trial%known(of_heat), error, &
+            temperature, inside)
+         if (allocated(error)) return
          data%held_jump = bodies%points%jumps(given)
          where (bodies%jump_index > 0) data%held_jump = 0.0_dp
          if (bodies%points%vary_with_temperature()) data%welded_mean = &
@@ -398,7 +399,8 @@ contains
          end if
          force = bodies%equilibrium%load_of(bodies%mechanical, applied + thermal, given, left)
          call bodies%equilibrium%condense_load(bodies%mechanical, force, &
-            trial%known(of_mechanics))
+            trial%known(of_mechanics), error)
+         if (allocated(error)) return
          ! A solution with other corrections has the factors of the one before.
          if (.not. allocated(work%initial_gap)) then
             if (allocated(trial%data%wear_by_pressure)) then

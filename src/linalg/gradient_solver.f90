@@ -7,10 +7,11 @@
 !> It solves for unknowns of a given basis: values between corners beside parts of those at corners
 !> (hierarchical basis) save half of the steps.
 module gradient_solver
-   use errors, only: error_type
+   use errors, only: error_type, set_error, status_no_convergence
    use kinds, only: dp, long
    use linear_solver, only: check_pattern, linear_solver_type
    use sparse_matrix, only: congruent, linear_combination, sparse_matrix_type, symmetric
+   use text, only: to_text
    implicit none
    private
    public :: gradient_solver_type
@@ -290,33 +291,41 @@ contains
    end subroutine recover
 
    !> Solves for what a guess leaves over of rates that balance.
-   subroutine improve(self, rates, rhs, solution)
+   !> Error: status_no_convergence, gradients do not get there.
+   subroutine improve(self, rates, rhs, solution, error)
       class(gradient_solver_type), intent(in) :: self
       real(dp), intent(in) :: rates           !! their norm, 0 where it is not known
       real(dp), intent(in) :: rhs(:, :)       !! (order, columns), in the unit of the rates
       real(dp), intent(out) :: solution(:, :) !! (order, columns)
+      type(error_type), allocatable, intent(out) :: error
+      logical :: is_solved
 
       if (self%iterates) then
-         call solve(self, tolerance, of_rates*rates, rhs, solution)
+         call solve(self, tolerance, of_rates*rates, rhs, solution, is_solved)
+         if (.not. is_solved) call set_error(error, status_no_convergence, 'conjugate '// &
+            'gradients do not find temperatures in '//to_text(most_steps)//' steps, since '// &
+            'little heat is stored beside what is conducted; allow shorter increments')
       else
          call self%direct%recover(rhs(:0, :), solution, rhs)
       end if
    end subroutine improve
 
    !> Solves for right-hand sides.
-   pure subroutine solve(self, part, small, rhs, solution)
+   pure subroutine solve(self, part, small, rhs, solution, is_solved)
       type(gradient_solver_type), intent(in) :: self
       real(dp), intent(in) :: part                   ! of these that may be left over
       real(dp), intent(in) :: small                  ! norm that may be, too
       real(dp), intent(in) :: rhs(:, :)
       real(dp), intent(out) :: solution(:, :)
-      logical :: is_solved
+      logical, intent(out), optional :: is_solved    ! whether all are
+      logical :: solved(size(rhs, 2))
       integer :: k
 
       solution = rhs
       do k = 1, size(rhs, 2)
-         call iterate(self, most_steps, part, small, solution(:, k), is_solved)
+         call iterate(self, most_steps, part, small, solution(:, k), solved(k))
       end do
+      if (present(is_solved)) is_solved = all(solved)
    end subroutine solve
 
    !> As release_interface of linear_solver says.
