@@ -60,9 +60,8 @@ module field_problem
       integer :: numbering = 0                                !! which numbering, counted
       type(body_division_type) :: division                    !! where bodies are reduced by pieces
       !> Whether most solutions have a diagonal of their own, and neither pieces nor a tail; where
-      !> they have, the basis of the gradient solver, and the leading nodes of the map
+      !> they have, the leading nodes of the map
       logical :: changes = .false.
-      type(sparse_matrix_type) :: basis
       integer, allocatable :: leading(:)
    contains
       procedure :: matrix_of_unknowns
@@ -291,7 +290,6 @@ contains
       if (problem%changes) then
          allocate (gradients)
          call move_alloc(direct, gradients%direct)
-         gradients%basis = problem%basis
          call move_alloc(gradients, solver)
       else
          call move_alloc(direct, solver)

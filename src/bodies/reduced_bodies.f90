@@ -8,7 +8,7 @@ module reduced_bodies
    use conductance_laws, only: is_constant
    use contact_points, only: contact_points_type, on_axis
    use dilatation, only: dilatation_type
-   use element_kinds, only: element_corner_count, element_node_count, side_nodes
+   use element_kinds, only: element_node_count
    use equilibrium_reduction, only: equilibrium_reduction_type
    use errors, only: error_type
    use field_problem, only: field_problem_type
@@ -33,8 +33,6 @@ module reduced_bodies
    public :: reduced_bodies_type
 
    real(dp), parameter :: far = 1.0e3_dp        !! ratio of stiffnesses that are far apart
-   !> Part of each corner in temperatures between them: 0.4 is best for K, 0.15 for C
-   real(dp), parameter :: of_corner = 0.3_dp
 
    !> The reduced bodies.
    type :: reduced_bodies_type
@@ -370,41 +368,10 @@ contains
          self%thermal%changes = any(model%steps%is_transient) .and. size(points%weight) == 0 .and. &
             self%thermal%map%tail == 0 .and. .not. allocated(self%thermal%division%piece) .and. &
             any(melts(model%materials(model%sections%material)))
-         if (self%thermal%changes) then
-            self%thermal%leading = self%thermal%map%leading_nodes()
-            self%thermal%basis = hierarchical_basis(model%mesh, self%thermal%map)
-         end if
+         if (self%thermal%changes) self%thermal%leading = self%thermal%map%leading_nodes()
          self%jump_index = self%thermal%map%tail_index(self%thermal%map%introduced)
       end associate
    end subroutine number
-
-   !> Unknown temperatures by those at corners and by what those between have beside their mean.
-   pure function hierarchical_basis(mesh, map) result(basis)
-      type(mesh_type), intent(in) :: mesh
-      type(linear_constraints_type), intent(in) :: map       ! without a tail
-      type(sparse_matrix_type) :: basis                      ! (equations, equations)
-      type(triplet_list_type) :: list
-      integer :: corner, e, i, side, unknown(size(mesh%node_number)), unknowns(3)
-
-      call list%reserve(3*map%equations)
-      do i = 1, map%equations
-         call list%add(i, i, 1.0_dp)
-      end do
-      unknown = 0
-      unknown(map%leading_nodes()) = [(i, i=1, map%equations)]
-      do e = 1, size(mesh%element_kind)
-         if (element_node_count(mesh%element_kind(e)) <= 4) cycle
-         do side = 1, element_corner_count(mesh%element_kind(e))
-            unknowns = unknown(mesh%element_nodes(side_nodes(mesh%element_kind(e), side), e))
-            if (unknowns(2) == 0) cycle
-            do corner = 1, 3, 2
-               if (unknowns(corner) > 0) call list%add(unknowns(2), unknowns(corner), of_corner)
-            end do
-            unknown(mesh%element_nodes(element_corner_count(mesh%element_kind(e)) + side, e)) = 0
-         end do
-      end do
-      basis = list%compress(map%equations, map%equations)
-   end function hierarchical_basis
 
    !> Finds the motions that the supports leave free, where contact points change any.
    subroutine find_motions(self, model, prescribed)

@@ -1,43 +1,38 @@
 !> Solver of a matrix beside which a small part changes with nearly each solution, so that factors
-!> would serve but once: conjugate gradients, preconditioned by a sweep of Gauss and Seidel to and
-!> fro, at the cost of one product for both (S. C. Eisenstat, SIAM J. Sci. Stat. Comput. 2 (1981)
-!> 1). It takes few steps where heat is stored. A matrix that would need many goes to a direct
-!> solver.
-!>
-!> It solves for unknowns of a given basis: values between corners beside parts of those at corners
-!> (hierarchical basis) save half of the steps.
+!> would serve but once: conjugate gradients, preconditioned by incomplete factors that have entries
+!> where the matrix has (J. A. Meijerink, H. A. van der Vorst, Math. Comp. 31 (1977) 148). It takes
+!> few steps where heat is stored. A matrix that would need many goes to a direct solver.
 module gradient_solver
    use errors, only: error_type, set_error, status_no_convergence
    use kinds, only: dp, long
    use linear_solver, only: check_pattern, linear_solver_type
-   use sparse_matrix, only: congruent, linear_combination, sparse_matrix_type, symmetric
+   use sparse_matrix, only: linear_combination, sparse_matrix_type
    use text, only: to_text
    implicit none
    private
    public :: gradient_solver_type
 
    ! How fast they converge is tried with a uniform load, whose solution is smooth. So many steps
-   ! would be some 200 to the end.
+   ! would be some 70 to the end, which take as long as factors.
    integer, parameter :: trial_steps = 8
-   real(dp), parameter :: trial_tolerance = 0.36_dp
+   real(dp), parameter :: trial_tolerance = 0.05_dp
    integer, parameter :: most_steps = 1000
    !> What is left over of a right-hand side, where the size of a solution is asked for, and of the
    !> rates that balance
-   real(dp), parameter :: tolerance = 1.0e-11_dp, rough = 1.0e-3_dp, of_rates = 1.0e-10_dp
+   real(dp), parameter :: tolerance = 1.0e-11_dp, rough = 1.0e-3_dp, of_rates = 1.0e-11_dp
+   !> Pivot over diagonal entry below which incomplete factors take the entry
+   real(dp), parameter :: least_pivot = 1.0e-3_dp
 
-   !> A matrix without a tail, with a part beside it scaled to I + L + L^T, or factors of both by
-   !> another solver.
+   !> A matrix without a tail, with a part beside it, and L of incomplete factors L L^T of both or
+   !> factors by another solver.
    type, extends(linear_solver_type) :: gradient_solver_type
       class(linear_solver_type), allocatable :: direct   !! that other solver, given at first
-      type(sparse_matrix_type) :: basis   !! unknowns by those that are solved for, given at first
       integer, allocatable, private :: rank(:)           !! (order) for it, if known
       logical, private :: is_analysed = .false.          !! whether it is
       logical, private :: iterates = .false.
-      type(sparse_matrix_type), private :: lower         !! as it was given, for the other solver
-      !> Between the unknowns that are solved for, both triangles, and that with the part, scaled
-      type(sparse_matrix_type), private :: transformed, scaled
-      integer, allocatable, private :: diagonal(:)       !! (order) places on its diagonal
-      real(dp), allocatable, private :: scaling(:)       !! (order) 1/sqrt(diagonal)
+      type(sparse_matrix_type), private :: alone         !! as it was given, the lower triangle
+      type(sparse_matrix_type), private :: lower         !! with the part
+      real(dp), allocatable, private :: factors(:)       !! L; 1/L_ii on the diagonal
    contains
       procedure :: analyse
       procedure :: factor
@@ -63,6 +58,7 @@ contains
       self%row_start = lower%row_start
       self%column = lower%column
       if (allocated(rank)) self%rank = rank
+      if (allocated(self%factors)) deallocate (self%factors)
    end subroutine analyse
 
    !> As factor_interface of linear_solver says.
@@ -70,29 +66,20 @@ contains
       class(gradient_solver_type), intent(inout) :: self
       type(sparse_matrix_type), intent(in) :: lower
       type(error_type), allocatable, intent(out) :: error
-      logical :: is_solved
       real(dp) :: load(self%order)
-      type(sparse_matrix_type) :: part
 
       call check_pattern(self, lower, error)
       if (allocated(error)) return
       self%schur = reshape([real(dp) ::], [0, 0])
-      part = congruent(symmetric(lower), self%basis)
-      self%transformed = symmetric(part)
-      self%scaled = self%transformed
-      ! Rows of L have so many entries, the last of them on the diagonal.
-      self%diagonal = self%scaled%row_start(:self%order) + part%row_start(2:) - &
-         part%row_start(:self%order) - 1
-      call scale_matrix(self)
+      self%alone = lower
+      self%lower = lower
+      self%factor_bytes = 2*storage_size(1.0_dp)/8*size(lower%value, kind=long)
+      self%smallest_pivot = 1.0_dp
+      call factor_incompletely(self)
       load = 1.0_dp
-      if (self%iterates) then
-         call iterate(self, trial_steps, trial_tolerance, 0.0_dp, load, is_solved)
-         self%iterates = is_solved
-      end if
-      if (.not. self%iterates) then
-         self%lower = lower
-         call factor_directly(self, lower, error)
-      end if
+      if (self%iterates) call iterate(self, trial_steps, trial_tolerance, 0.0_dp, load, &
+         self%iterates)
+      if (.not. self%iterates) call factor_directly(self, lower, error)
    end subroutine factor
 
    !> Factors the matrix that was given last with a positive semidefinite part beside it, within its
@@ -102,13 +89,23 @@ contains
       class(gradient_solver_type), intent(inout) :: self
       type(sparse_matrix_type), intent(in) :: part           !! (order, order) lower triangle
       type(error_type), allocatable, intent(out) :: error
+      integer :: i, k, place
 
-      if (self%iterates) then
-         call add_part(self, part)
-         call scale_matrix(self)
-      else
-         call factor_directly(self, linear_combination(1.0_dp, self%lower, 1.0_dp, part), error)
+      if (.not. self%iterates) then
+         call factor_directly(self, linear_combination(1.0_dp, self%alone, 1.0_dp, part), error)
+         return
       end if
+      associate (lower => self%lower)
+         lower%value(:) = self%alone%value
+         do i = 1, self%order
+            do k = part%row_start(i), part%row_start(i + 1) - 1
+               place = lower%row_start(i) - 1 + findloc(lower%column(lower%row_start(i): &
+                  lower%row_start(i + 1) - 1), part%column(k), dim=1)
+               lower%value(place) = lower%value(place) + part%value(k)
+            end do
+         end do
+      end associate
+      call factor_incompletely(self)
    end subroutine add
 
    !> Factors with the other solver.
@@ -131,134 +128,120 @@ contains
       self%lost_unknown = self%direct%lost_unknown
    end subroutine factor_directly
 
-   !> Takes a part to the unknowns that are solved for, and adds it to the matrix there.
-   pure subroutine add_part(self, part)
+   !> Finds incomplete factors, row by row, if the diagonal is positive: L_ij L_jj = A_ij - sum of
+   !> L_ik L_jk over k < j.
+   pure subroutine factor_incompletely(self)
       type(gradient_solver_type), intent(inout) :: self
-      type(sparse_matrix_type), intent(in) :: part
-      integer :: i, k
+      real(dp) :: row(self%order)                    ! L_ij, zero where it has no entry
+      integer :: i, j, k, l
 
-      self%scaled%value(:) = self%transformed%value
-      do i = 1, self%order
-         do k = part%row_start(i), part%row_start(i + 1) - 1
-            if (abs(part%value(k)) <= 0.0_dp) cycle
-            call add_entry(self%scaled, self%basis, i, part%column(k), part%value(k))
-            if (i /= part%column(k)) call add_entry(self%scaled, self%basis, part%column(k), i, &
-               part%value(k))
-         end do
-      end do
-   end subroutine add_part
-
-   !> Adds what an entry is between other unknowns.
-   pure subroutine add_entry(matrix, basis, i, j, value)
-      type(sparse_matrix_type), intent(inout) :: matrix      ! between the others
-      type(sparse_matrix_type), intent(in) :: basis
-      integer, intent(in) :: i, j                            ! row and column
-      real(dp), intent(in) :: value
-      integer :: k, l, place
-
-      do k = basis%row_start(i), basis%row_start(i + 1) - 1
-         do l = basis%row_start(j), basis%row_start(j + 1) - 1
-            associate (first => matrix%row_start(basis%column(k)), next => matrix%row_start( &
-               basis%column(k) + 1))
-               place = first - 1 + findloc(matrix%column(first:next - 1), basis%column(l), dim=1)
-            end associate
-            matrix%value(place) = matrix%value(place) + value*basis%value(k)*basis%value(l)
-         end do
-      end do
-   end subroutine add_entry
-
-   !> Brings the diagonal to 1, if all of it is positive.
-   pure subroutine scale_matrix(self)
-      type(gradient_solver_type), intent(inout) :: self
-      integer :: i, k
-
-      associate (matrix => self%scaled)
-         self%scaling = matrix%value(self%diagonal)
-         self%iterates = all(self%scaling > 0.0_dp)
-         if (.not. self%iterates) return
-         self%scaling = 1.0_dp/sqrt(self%scaling)
+      if (.not. allocated(self%factors)) allocate (self%factors(size(self%lower%value)))
+      self%iterates = .true.
+      row = 0.0_dp
+      associate (start => self%lower%row_start, column => self%lower%column, value => &
+         self%lower%value, factors => self%factors)
          do i = 1, self%order
-            do k = matrix%row_start(i), matrix%row_start(i + 1) - 1
-               matrix%value(k) = self%scaling(i)*matrix%value(k)*self%scaling(matrix%column(k))
-            end do
+            ! The last entry of a row of the lower triangle is that on the diagonal.
+            associate (first => start(i), diagonal => start(i + 1) - 1)
+               self%iterates = self%iterates .and. value(diagonal) > 0.0_dp
+               factors(diagonal) = value(diagonal)
+               do k = first, diagonal - 1
+                  row(column(k)) = value(k)
+               end do
+               do k = first, diagonal - 1
+                  j = column(k)
+                  do l = start(j), start(j + 1) - 2
+                     row(j) = row(j) - factors(l)*row(column(l))
+                  end do
+                  row(j) = row(j)*factors(start(j + 1) - 1)
+                  factors(diagonal) = factors(diagonal) - row(j)**2
+               end do
+               if (factors(diagonal) < least_pivot*value(diagonal)) factors(diagonal) = &
+                  value(diagonal)
+               factors(diagonal) = 1.0_dp/sqrt(max(factors(diagonal), tiny(row)))
+               do k = first, diagonal - 1
+                  factors(k) = row(column(k))
+                  row(column(k)) = 0.0_dp
+               end do
+            end associate
          end do
-         self%factor_bytes = storage_size(1.0_dp)/8*size(matrix%value, kind=long)
-         self%smallest_pivot = 1.0_dp
       end associate
-   end subroutine scale_matrix
+   end subroutine factor_incompletely
 
    !> Solves for a right-hand side.
    pure subroutine iterate(self, most, part, small, x, is_solved)
       type(gradient_solver_type), intent(in) :: self
       integer, intent(in) :: most                    ! steps
       real(dp), intent(in) :: part                   ! of the right-hand side that may be left over
-      real(dp), intent(in) :: small                  ! norm before scaling that may be, too
+      real(dp), intent(in) :: small                  ! norm that may be, too
       real(dp), intent(inout) :: x(self%order)       ! that, then the solution
       logical, intent(out) :: is_solved
       real(dp), dimension(self%order) :: direction, left_over, product, t
-      real(dp) :: before, length, square, least
+      real(dp) :: before, least, length, square
       integer :: step
 
-      left_over = self%scaling*self%basis%multiply_transposed(x)
-      call sweep_down(self%order, self%scaled%row_start, self%diagonal, self%scaled%column, &
-         self%scaled%value, left_over)
-      direction = left_over
-      square = dot_product(left_over, left_over)
-      least = max(part*norm2(left_over), small*minval(self%scaling))**2
+      left_over = x
+      least = max(part*norm2(left_over), small)
       x = 0.0_dp
-      do step = 1, most
-         is_solved = square <= least
-         if (is_solved) exit
-         t = direction
-         call sweep_up(self%order, self%scaled%row_start, self%diagonal, self%scaled%column, &
-            self%scaled%value, t)
-         product = direction - t
-         call sweep_down(self%order, self%scaled%row_start, self%diagonal, self%scaled%column, &
-            self%scaled%value, product)
-         product = product + t
-         length = square/dot_product(direction, product)
-         x = x + length*t
-         left_over = left_over - length*product
+      direction = 0.0_dp
+      square = 1.0_dp
+      do step = 0, most
+         is_solved = norm2(left_over) <= least
+         if (is_solved .or. step == most) exit
+         t = left_over
+         call substitute(self%order, self%lower%row_start, self%lower%column, self%factors, t)
          before = square
-         square = dot_product(left_over, left_over)
-         direction = left_over + square/before*direction
+         square = dot_product(left_over, t)
+         direction = t + square/before*direction
+         call multiply(self%order, self%lower%row_start, self%lower%column, self%lower%value, &
+            direction, product)
+         length = square/dot_product(direction, product)
+         x = x + length*direction
+         left_over = left_over - length*product
       end do
-      x = self%basis%multiply(self%scaling*x)
    end subroutine iterate
 
-   !> (I + L)^-1 x.
-   pure subroutine sweep_down(n, row_start, diagonal, column, value, x)
-      integer, intent(in) :: n, row_start(n + 1), diagonal(n), column(*)
-      real(dp), intent(in) :: value(*)
+   !> (L L^T)^-1 x.
+   pure subroutine substitute(n, row_start, column, factors, x)
+      integer, intent(in) :: n, row_start(n + 1), column(*)
+      real(dp), intent(in) :: factors(*)             ! L; 1/L_ii on the diagonal
       real(dp), intent(inout) :: x(n)
-      real(dp) :: total
+      real(dp) :: own
       integer :: i, k
 
       do i = 1, n
-         total = x(i)
-         do k = row_start(i), diagonal(i) - 1
-            total = total - value(k)*x(column(k))
+         own = x(i)
+         do k = row_start(i), row_start(i + 1) - 2
+            own = own - factors(k)*x(column(k))
          end do
-         x(i) = total
+         x(i) = own*factors(row_start(i + 1) - 1)
       end do
-   end subroutine sweep_down
+      do i = n, 1, -1
+         own = x(i)*factors(row_start(i + 1) - 1)
+         x(i) = own
+         do k = row_start(i), row_start(i + 1) - 2
+            x(column(k)) = x(column(k)) - factors(k)*own
+         end do
+      end do
+   end subroutine substitute
 
-   !> (I + L^T)^-1 x.
-   pure subroutine sweep_up(n, row_start, diagonal, column, value, x)
-      integer, intent(in) :: n, row_start(n + 1), diagonal(n), column(*)
-      real(dp), intent(in) :: value(*)
-      real(dp), intent(inout) :: x(n)
-      real(dp) :: total
+   !> A x of the lower triangle of A.
+   pure subroutine multiply(n, row_start, column, value, x, product)
+      integer, intent(in) :: n, row_start(n + 1), column(*)
+      real(dp), intent(in) :: value(*), x(n)
+      real(dp), intent(out) :: product(n)
+      real(dp) :: own
       integer :: i, k
 
-      do i = n, 1, -1
-         total = x(i)
-         do k = row_start(i + 1) - 1, diagonal(i) + 1, -1
-            total = total - value(k)*x(column(k))
+      do i = 1, n
+         own = value(row_start(i + 1) - 1)*x(i)
+         do k = row_start(i), row_start(i + 1) - 2
+            own = own + value(k)*x(column(k))
+            product(column(k)) = product(column(k)) + value(k)*x(i)
          end do
-         x(i) = total
+         product(i) = own
       end do
-   end subroutine sweep_up
+   end subroutine multiply
 
    !> As condense_interface of linear_solver says, but that solutions are rough.
    subroutine condense(self, rhs, condensed, welded)

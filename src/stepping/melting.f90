@@ -151,8 +151,10 @@ contains
       do l = 1, most_elements
          near(:, l) = near(:, l - 1)
          do i = 1, size(rhs)
-            if (near(i, l - 1)) near(matrix%column(matrix%row_start(i): &
-               matrix%row_start(i + 1) - 1), l) = .true.
+            if (.not. near(i, l - 1)) cycle
+            do k = matrix%row_start(i), matrix%row_start(i + 1) - 1
+               near(matrix%column(k), l) = .true.
+            end do
          end do
       end do
       rows = pack([(i, i=1, size(rhs))], near(:, most_elements) .and. moves)
@@ -172,8 +174,9 @@ contains
                if (matrix%column(l) == i) own = matrix%value(l)
             end do
             if (abs(left_over) <= small(i)) cycle
-            waits(matrix%column(matrix%row_start(i):matrix%row_start(i + 1) - 1)) = .true.
-            waits(i) = .false.
+            do l = matrix%row_start(i), matrix%row_start(i + 1) - 1
+               waits(matrix%column(l)) = matrix%column(l) /= i
+            end do
             left_over = left_over + held(i) + own*temperature(i)
             temperature(i) = left_over/own
             if (at(i) == 0) cycle
