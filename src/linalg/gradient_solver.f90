@@ -181,12 +181,12 @@ contains
       integer :: step
 
       left_over = x
-      least = max(part*norm2(left_over), small)
+      least = max(part*norm2(left_over), small)**2
       x = 0.0_dp
       direction = 0.0_dp
       square = 1.0_dp
       do step = 0, most
-         is_solved = norm2(left_over) <= least
+         is_solved = dot_product(left_over, left_over) <= least
          if (is_solved .or. step == most) exit
          t = left_over
          call substitute(self%order, self%lower%row_start, self%lower%column, self%factors, t)
@@ -207,7 +207,7 @@ contains
       real(dp), intent(in) :: factors(*)             ! L; 1/L_ii on the diagonal
       real(dp), intent(inout) :: x(n)
       real(dp) :: own
-      integer :: i, k
+      integer :: i, j, k
 
       do i = 1, n
          own = x(i)
@@ -220,7 +220,8 @@ contains
          own = x(i)*factors(row_start(i + 1) - 1)
          x(i) = own
          do k = row_start(i), row_start(i + 1) - 2
-            x(column(k)) = x(column(k)) - factors(k)*own
+            j = column(k)
+            x(j) = x(j) - factors(k)*own
          end do
       end do
    end subroutine substitute
@@ -231,13 +232,14 @@ contains
       real(dp), intent(in) :: value(*), x(n)
       real(dp), intent(out) :: product(n)
       real(dp) :: own
-      integer :: i, k
+      integer :: i, j, k
 
       do i = 1, n
          own = value(row_start(i + 1) - 1)*x(i)
          do k = row_start(i), row_start(i + 1) - 2
-            own = own + value(k)*x(column(k))
-            product(column(k)) = product(column(k)) + value(k)*x(i)
+            j = column(k)
+            own = own + value(k)*x(j)
+            product(j) = product(j) + value(k)*x(i)
          end do
          product(i) = own
       end do
