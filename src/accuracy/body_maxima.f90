@@ -37,6 +37,7 @@ module body_maxima
    !> Angle that straight sides of elements may add where they follow a curve, curved ones.
    real(dp), parameter :: of_chords = 30*degree, of_curves = 10*degree
    real(dp), parameter :: no_force = 1.0e-6_dp   !! of the largest nodal force: none
+   real(dp), parameter :: rounding = 1.0e-10_dp  !! part of the largest value
 
    !> Maxima of the bodies of a mesh.
    type :: body_maxima_type
@@ -88,13 +89,25 @@ contains
          if (maxima(q)%unit == 'temperature') self%counts(:, q) = &
             allocated(record%fields%reaction_heat)
          self%value(q, :) = merge(0.0_dp, -huge(1.0_dp), maxima(q)%unit == '-')
-         values = point_values(trim(maxima(q)%name), record%fields, simulation%recovery%points%node)
+         values = resolved_values(q, record%fields, simulation%recovery%points%node)
          if (size(values) > 0) call find_one(self, q, model%mesh, simulation%recovery%points, &
             values, is_larger)
       end do
       where (self%node == 0) self%value = ieee_value(1.0_dp, ieee_quiet_nan)
       self%corners = pack([(i, i=1, size(is_larger))], self%is_singular .and. is_larger)
    end subroutine find
+
+   !> Values of a quantity; stress and strains that are rounding of the largest ones are 0.
+   function resolved_values(q, fields, node) result(values)
+      integer, intent(in) :: q
+      type(field_record_type), intent(in) :: fields
+      integer, intent(in) :: node(:)                         ! (points)
+      real(dp), allocatable :: values(:)                     ! (points)
+
+      values = point_values(trim(maxima(q)%name), fields, node)
+      if (maxima(q)%unit /= 'temperature') where (abs(values) <= rounding*maxval(abs(values))) &
+         values = 0.0_dp
+   end function resolved_values
 
    !> Finds the maximum of one quantity in each body, and the nodes of elements that reach it.
    pure subroutine find_one(self, q, mesh, points, values, is_larger)
@@ -142,8 +155,8 @@ contains
       fine = divided%run%recovery%points
       change = 0.0_dp
       do q = 1, size(maxima)
-         before = point_values(trim(maxima(q)%name), fields, simulation%recovery%points%node)
-         after = point_values(trim(maxima(q)%name), divided%record%fields, fine%node)
+         before = resolved_values(q, fields, simulation%recovery%points%node)
+         after = resolved_values(q, divided%record%fields, fine%node)
          if (size(after) == 0) change(q, :) = ieee_value(1.0_dp, ieee_quiet_nan)
          do b = 1, size(change, 2)
             if (self%node(q, b) == 0 .or. size(after) == 0) cycle

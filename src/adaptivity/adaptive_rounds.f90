@@ -68,7 +68,6 @@ module adaptive_rounds
 
    !> Part of the squared error that is marked, in the first round but half of what a target allows
    real(dp), parameter :: most_marked = 0.8_dp
-   real(dp), parameter :: alike = 0.99_dp       !! part of a squared error that counts as the same
    real(dp), parameter :: part = 0.4_dp         !! of a target that the resolution of edges may take
    real(dp), parameter :: reach = 0.5_dp        !! of the contact length: where influence falls
 
@@ -244,8 +243,7 @@ contains
             weight = weight*(squared_errors(model%mesh, record%stress_error) + &
                squared_errors(model%mesh, record%heat_flux_error))
             ! Hanging nodes between elements of the same error would bring a larger one.
-            where (weight >= alike*minval(weight, mask=largest_part(weight, marked))) &
-               of_elements = max(of_elements, levels)
+            where (largest_part(weight, marked)) of_elements = max(of_elements, levels)
          end associate
       end do
    end subroutine take

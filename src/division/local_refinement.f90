@@ -29,6 +29,7 @@ module local_refinement
    real(dp), parameter :: near = 0.75_dp
 
    integer, parameter :: halvings = 50   !! of the interval that holds the least of largest_part
+   real(dp), parameter :: alike = 0.99_dp   !! part of a value that counts as the same
 
 contains
 
@@ -401,7 +402,8 @@ contains
       end associate
    end function to_point
 
-   !> The largest values, as many as have a part of the sum of all.
+   !> The largest values, as many as have a part of the sum of all, and those like the least of them:
+   !> rounding chooses none.
    pure function largest_part(values, part) result(chosen)
       real(dp), intent(in) :: values(:)     !! not negative
       real(dp), intent(in) :: part          !! of their sum
@@ -419,7 +421,7 @@ contains
             high = middle
          end if
       end do
-      chosen = values >= least .and. values > 0.0_dp
+      chosen = values >= alike*least .and. values > 0.0_dp
    end function largest_part
 
 end module local_refinement

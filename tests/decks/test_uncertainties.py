@@ -94,12 +94,13 @@ def test_change_of_a_complete_finer_run(tmp_path, friction, held):
 
 @pytest.mark.parametrize("held", ["B.BOTTOM", "B"])
 def test_change_of_the_last_increment_alone(tmp_path, held):
-    """Without friction it is that to a run with all elements halved: those at the faces err most."""
+    """Without friction it is nearly that to a run with all elements halved: those that stay whole, as far
+    from the faces, hold 0.05 of the squared errors."""
     coarse = errors(solve(bent_on_a_block(tmp_path / "coarse.inp", [], held=held)), "P")
     fine = errors(solve(bent_on_a_block(tmp_path / "fine.inp", [], ["*REFINE, LEVELS=1"], held)), "P")
     for name in ("normal_force", "heat_rate", "peak_pressure"):
         value, _, change, *_ = coarse[name]
-        assert FACTOR * abs(fine[name][0] - value) == pytest.approx(change, rel=0.03), name
+        assert FACTOR * abs(fine[name][0] - value) == pytest.approx(change, rel=0.05), name
 
 
 def test_a_later_step_divides_the_elements_at_its_contact(tmp_path):
