@@ -70,3 +70,12 @@ def test_tables_that_a_line_divides_are_found():
 def test_wide_cells_and_lines_are_found():
     assert list(wide(f"| a | {'b' * 201} |\n{'word ' * 21}\n")) == [f" {'b' * 201} ", "word " * 21]
     assert not list(wide(f"| {'a' * 150} | {'b' * 150} |\n```\n{'c' * 120}\n```\n"))
+
+
+def test_running_has_every_reason_for_which_a_number_has_no_uncertainty():
+    source = (ROOT / "src" / "model" / "no_estimates.f90").read_text()
+    words = re.search(r":: words\(.*?\[(.*?)\]", source, re.S)[1]
+    reasons = re.findall(r"'(.*?)'", words)
+    text = (ROOT / "docs" / "running.md").read_text()
+    assert len(reasons) > 10
+    assert [reason for reason in reasons if f"`{reason}`" not in text] == []
