@@ -7,7 +7,8 @@ module increment_control
    use model, only: model_type
    use records, only: increment_record_type
    use state_tables, only: integers, reals, state_table_type
-   use steps, only: adapts_increments, increment_growth, planned_increments, step_type
+   use steps, only: adapts_increments, increment_growth, planned_increments, smallest_part, &
+      step_type
    use text, only: counted, percent, to_text
    implicit none
    private
@@ -358,10 +359,13 @@ contains
 
       words = 'step '//to_text(self%step)//', increment size '//to_text(failed)
       if (model%steps(self%step)%direct) then
-         words = words//', which DIRECT does not allow to be cut back'
+         words = words//', which DIRECT does not allow to be cut back: leave DIRECT out'
       else
          words = words//', the smallest that the step allows'
          if (self%cut_backs > 0) words = words//', after '//counted(self%cut_backs, 'cut-back')
+         if (model%steps(self%step)%smallest_increment > smallest_part*model%steps(self%step)% &
+            period) words = words//'; give a shorter smallest increment, the third value of the '// &
+            'step''s times'
       end if
    end function why_not_again
 

@@ -179,6 +179,7 @@ def test_smallest_increment_ends_the_run_and_keeps_what_was_solved(deck):
         process.stderr,
     )
     assert said, process.stderr
+    assert "shorter" not in process.stderr   # than the default, which hardly helps
     result = path.with_suffix(".vtkhdf")
     times = history(result, "time")
     assert int(said[1]) == len(times) + 1
@@ -205,7 +206,8 @@ def test_given_smallest_increment_is_obeyed(deck):
     path = deck("1., 1., 0.1")
     process = run("run", "--quiet", path, "--out", path.parent)
     assert process.returncode == 2
-    assert "increment size 0.1, the smallest that the step allows" in process.stderr
+    assert re.search("increment size 0.1, the smallest that the step allows.*; give a shorter smallest "
+                     "increment, the third value of the step's times", process.stderr)
     attempts = np.array([[float(x) for x in found] for found in re.findall(
         r"attempt \d+ of size (\S+), to time (\S+), not kept", path.with_suffix(".lst").read_text())])
     assert attempts[:, 0].min() == 0.1
@@ -216,7 +218,7 @@ def test_direct_increments_are_not_cut_back(deck):
     path.write_text(path.read_text().replace("STEADY STATE", "STEADY STATE, DIRECT"))
     process = run("run", "--quiet", path, "--out", path.parent)
     assert process.returncode == 2
-    assert "increment size 1, which DIRECT does not allow to be cut back" in process.stderr
+    assert "increment size 1, which DIRECT does not allow to be cut back: leave DIRECT out" in process.stderr
     assert not path.with_suffix(".vtkhdf").exists()
     assert {row[7] for row in rows_of(path, ".cvg")} == {"0"}
 

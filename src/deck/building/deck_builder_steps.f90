@@ -13,8 +13,9 @@ module deck_builder_steps
    use kinds, only: dp
    use materials, only: has_law
    use steps, only: adapts_increments, analysis_coupled, analysis_heat, analysis_static, &
-      cycle_type, increment_growth, least_increment, planned_increments, solves_heat, &
-      solves_mechanics, step_controls_type, step_type, until_displacement, until_force, until_strain
+      cycle_type, increment_growth, least_increment, planned_increments, smallest_part, &
+      solves_heat, solves_mechanics, step_controls_type, step_type, until_displacement, &
+      until_force, until_strain
    use text, only: percent, to_text
    use print_requests, only: time_points_type
    implicit none
@@ -32,8 +33,6 @@ module deck_builder_steps
       logical :: is_uncoupled = .false.  !! *UNCOUPLED TEMPERATURE-DISPLACEMENT
       logical :: has_prints(2) = .false.   !! *NODE PRINT, *EL PRINT
    end type card_counts_type
-
-   real(dp), parameter :: smallest_part = 1.0e-5_dp   !! of a period: smallest increment
 
 contains
 
