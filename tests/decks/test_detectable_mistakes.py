@@ -322,6 +322,17 @@ def test_a_latent_heat_in_other_units_than_the_specific_heat(tmp_path, heat, uni
     assert all("K times its specific heat" in message for message in found)
 
 
+def test_units_are_judged_beside_errors_elsewhere(tmp_path):
+    """A property that cannot be read has no unit; that of the other is told in the same check."""
+    label = ['*OPTIONS, UNITS="m Pa W C"']
+    cards = [*mesh("LOW", [0.0, 1.0], [0.0, 1.0]), *solid("LOW", 210.0, 0.3, 0.0, 50.0), *HEATED]
+    where = cards.index("*CONDUCTIVITY") + 1
+    wrong = [*cards[:where], "fifty", *cards[where + 1:], "*MATERIAL, NAME=NONE", "*LATENT HEAT", "3.9E5, 555., 615."]
+    found = warnings(tmp_path, label, wrong, status=1)
+    assert [card for message, card in found if "of solids" in message] == ["*ELASTIC"]
+    assert [card for message, card in found if "fifty" in message] == ["fifty"]
+
+
 @pytest.mark.parametrize("analysis", ["*STATIC", "*HEAT TRANSFER, STEADY STATE"])
 def test_units_of_properties_that_no_step_needs_are_not_judged(tmp_path, analysis):
     cards = [*mesh("LOW", [0.0, 1.0], [0.0, 1.0]), *solid("LOW", 2.1e11, 0.3, 0.0, 50.0),

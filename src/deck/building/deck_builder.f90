@@ -85,6 +85,7 @@ contains
       call build_load_axis(deck)
       call check_model(deck)
       if (.not. deck%has_errors()) call complete_model(deck)
+      if (deck%analyses_sound) call check_units(deck)
       if (.not. allocated(deck%notes)) allocate (deck%notes(0))
       call move_alloc(deck%notes, model%notes)
       model%warnings = deck%warnings()
@@ -158,7 +159,6 @@ contains
          call check_usage(deck)
          call check_heat_paths(deck)
          call check_friction_heat(deck)
-         call check_units(deck)
       end if
       call note_defaults(deck)
    end subroutine complete_model

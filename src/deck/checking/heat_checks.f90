@@ -274,7 +274,8 @@ contains
       end if
    end subroutine widen
 
-   !> Warns of constants in other units than the deck says, and of temperatures below absolute zero.
+   !> Warns of constants in other units than the deck says, and of temperatures below absolute zero:
+   !> of what was read, where the deck has errors.
    subroutine check_units(deck)
       type(deck_type), intent(inout) :: deck
       type(unit_type) :: degree, metre, pascal, watt
@@ -290,6 +291,7 @@ contains
          call deck%open_card(k)
          select case (deck%card%name)
          case ('PHYSICAL CONSTANTS')
+            if (deck%has_errors()) cycle   ! it may have one, or temperatures
             call check_zero(degree, deck)
             if (min(degree%size, metre%size, watt%size) <= 0.0_dp .or. .not. deck%card%has( &
                'STEFAN BOLTZMANN')) cycle
@@ -313,7 +315,7 @@ contains
          case ('LATENT HEAT')
             if (m == 0 .or. degree%size <= 0.0_dp) cycle
             associate (material => deck%model%materials(m))
-               if (.not. allocated(material%melting)) cycle
+               if (.not. allocated(material%melting) .or. heat_capacity(material) <= 0.0_dp) cycle
                ratio = degree%size*sum(material%melting%content)/heat_capacity(material)
                if (ratio < latent_ratios(1) .or. ratio > latent_ratios(2)) call deck%warning( &
                   deck%card%place, 'the latent heat of '//material%name//' is '//to_text(ratio)// &
@@ -340,6 +342,7 @@ contains
       ends = merge(moduli, conductivities, deck%card%name == 'ELASTIC')
       si_unit = trim(merge('Pa     ', 'W/(m K)', deck%card%name == 'ELASTIC'))
       associate (material => deck%model%materials(m))
+         if (.not. allocated(material%given)) return
          do i = 1, size(material%given)
             if (property_keywords(material%given(i)%kind) /= deck%card%name) cycle
             value = maxval(material%given(i)%values(1, :))
