@@ -4,6 +4,7 @@ module run_judgement
    use contact_points, only: contact_points_type
    use contact_system, only: contact_open
    use kinds, only: dp
+   use materials, only: has_law
    use mesh, only: extent_of
    use model, only: model_type
    use records, only: increment_record_type
@@ -18,6 +19,9 @@ module run_judgement
 
    !> Largest strain and rotation for which the linear theory holds, and where NLGEOM is asked for
    real(dp), parameter :: small = 0.1_dp, small_with_nlgeom = 0.05_dp
+   real(dp), parameter :: elastic = 0.5_dp   !! strain beyond those that solids recover from
+   character(*), parameter :: of_units = '; check the units of *ELASTIC, *EXPANSION, '// &
+      'loads and lengths'
    integer, parameter :: most_named = 5   !! contact pairs that never close
    real(dp), parameter :: unmoved = 1.0e-12_dp     !! part of the extent that is no displacement
    real(dp), parameter :: unheated = 1.0e-12_dp    !! part of a temperature that is no change
@@ -141,7 +145,9 @@ contains
             trim(merge('strain  ', 'rotation', i == of_strain))//' of element '// &
             to_text(model%mesh%element_number(self%element(i)))//' is '// &
             amount(i, self%largest(i))//'; the theory of small strains and displacements is '// &
-            'not valid above '//amount(i, limit))
+            'not valid above '//amount(i, limit)//trim(merge(of_units, repeat(' ', len(of_units)), &
+            i == of_strain .and. self%largest(i) > elastic .and. .not. any(has_law( &
+            model%materials)))))
       end do
       if (self%ended_early) then
          if (self%step == 0) return
