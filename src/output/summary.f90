@@ -185,6 +185,8 @@ contains
       do i = 1, size(self%steps)
          call append(lines, in_columns(self%steps(i)%value))
       end do
+      if (size(self%steps) > 0 .and. reason_of_run(model) == no_reason) call append(lines, &
+         'the listing has their uncertainties')
       call append(lines, 'at '//when(self, or_blank(model%load_label))//':')
       if (allocated(self%folds)) call append(lines, 'the branch turns at load factor'// &
          trim(merge('s', ' ', size(self%folds) > 1))//' '//listed(self%folds, most_folds)// &

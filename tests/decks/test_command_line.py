@@ -423,8 +423,12 @@ def test_a_summary_has_a_line_for_each_step_and_interface(tmp_path):
             assert float(line[2]) == pytest.approx(face["normal_force"][row], rel=1e-5)
             assert float(line[4]) == pytest.approx(face["pressure"][row].max(), rel=1e-5)
             assert (line[3] == "-") == (step == 1)
+    assert re.search(r"whole face\n +the listing has their uncertainties\n +at time", said)
     listing = (tmp_path / "turbine_joint.lst").read_text()
     assert listing.count("LOWER: whole face") == 2
+    assert listing.count("NUMERICAL UNCERTAINTY (95 %) OF LOWER") == 2
+    assert "their uncertainties" not in run("run", INPUT / "examples" / "turbine_joint.inp", "--errors", "no",
+                                            "--out", tmp_path).stdout
     assert "  step  " not in run("run", INPUT / "examples" / "press_fit.inp", "--out", tmp_path).stdout
 
 
