@@ -48,7 +48,8 @@ contains
          if (len(name) == 0) then
             call report%error(place_type(), '--set '//settings(i)%value//' is not NAME=VALUE')
          else if (len(value) == 0) then
-            call report%error(place_type(), '--set '//settings(i)%value//' has no value')
+            call report%error(place_type(), '--set '//settings(i)%value//' has no value; '// &
+               'leave it out for the value of *PARAMETER')
          else if (self%settings%find(name) > 0) then
             call report%error(place_type(), '--set gives '//name//' twice; leave one '// &
                'out (names are case-insensitive)')
