@@ -147,6 +147,7 @@ contains
       type(bar_type), intent(inout) :: bar
       real(dp) :: along(2)
 
+      if (nodes(1) == nodes(2)) return   ! as its element says
       along = deck%mesh%coordinates(:, nodes(2)) - deck%mesh%coordinates(:, nodes(1))
       if (all(abs(along) <= 0.0_dp)) then
          call deck%error(deck%card%place, 'nodes '//to_text(deck%mesh%node_number(nodes(1)))// &
