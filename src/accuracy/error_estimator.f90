@@ -57,6 +57,7 @@ module error_estimator
       logical :: is_on = .false.                   !! whether there is anything to estimate
       logical :: is_full = .false.                 !! whether the divided mesh follows the run
       character(:), allocatable :: lost            !! why there is no finer run; else unallocated
+      logical :: is_told = .false.                 !! whether an increment of this run has that
       logical, public :: is_interrupted = .false.  !! whether that is a signal
    contains
       procedure :: start
@@ -139,8 +140,9 @@ contains
          self%lost = error%message
          self%is_interrupted = error%status == status_interrupted
       end if
-      if (allocated(self%lost) .and. (allocated(error) .or. record%increment == 1)) call append( &
+      if (allocated(self%lost) .and. (allocated(error) .or. .not. self%is_told)) call append( &
          record%notes, 'numerical uncertainties cannot be estimated: '//self%lost)
+      self%is_told = allocated(self%lost)
       call simulation%bodies%views(self%interfaces)
       if (.not. allocated(self%lost)) call self%divided%run%bodies%views(self%finer)
    end subroutine solve_finer

@@ -288,6 +288,10 @@ def test_a_run_without_a_finer_one_goes_on_without_it(tmp_path):
     process = run("run", more, "--restart", result, "--out", tmp_path)
     assert process.returncode == 0, process.stderr
     assert "(no estimate: no solution on a finer mesh)" in process.stdout
+    why = r"numerical uncertainties cannot be estimated: (.*\n.*)"
+    said = [re.findall(why, path.with_suffix(".lst").read_text()) for path in (result, more)]
+    assert len(said[0]) == 1
+    assert said[0] == said[1]
 
 
 def test_the_increment_named_is_that_of_the_step_named(tmp_path):
