@@ -187,7 +187,7 @@ contains
       has = .false.
       if (allocated(self%error)) return
       call h5lexists_f(self%id, path, has, status)
-      call self%note([status], 'cannot look for '//path)
+      call self%note([status], 'the group of '//path//' is damaged')
    end function has
 
    !> Removes a dataset.
