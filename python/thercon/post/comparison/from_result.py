@@ -97,13 +97,14 @@ def nodes(result):
 
 
 def node_frame(result, names, step):
-    """Return the columns of all nodes at one time step; a node of several bodies or sections is a
-    point for each of them, numbered by `copy`."""
-    x, y = result.cells.points.T
-    frame = {"node": result.cells.node_id, "x": x, "y": y}
-    frame["copy"] = match.numbered(result.cells.node_id)
+    """Return the columns of the nodes of elements at one time step; a node of several bodies or
+    sections is a point for each of them, numbered by `copy`."""
+    used = result.cells.used
+    x, y = result.cells.points[used].T
+    frame = {"node": result.cells.node_id[used], "x": x, "y": y}
+    frame["copy"] = match.numbered(frame["node"])
     arrays = {FIELDS[name][0] for name in names}
-    arrays = {array: result.point_data(array, step) for array in arrays}
+    arrays = {array: result.point_data(array, step)[used] for array in arrays}
     for name in names:
         array, component = FIELDS[name]
         frame[name] = arrays[array] if component is None else arrays[array][:, component]
