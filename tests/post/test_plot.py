@@ -1165,6 +1165,29 @@ def test_titles_side_by_side_begin_on_one_height(laid_out, result):
         "\nthick line inside: edge of the plastic zone; dashed line: solid fraction 0.5")
 
 
+@pytest.mark.parametrize(("axis", "words"), [(0, "$x$ stretched by 10"), (1, "$y$ stretched by 10"), (None, "")])
+def test_a_thin_strip_is_stretched_and_says_by_how_much(laid_out, result, axis, words):
+    """A model 1 to 2, thinned to 1 to 80."""
+    with h5py.File(result, "r+") as file:
+        points = file["VTKHDF/Points"]
+        if axis is not None:
+            low, high = np.ptp(points[:, axis]), np.ptp(points[:, 1 - axis])
+            points[:, axis] = points[:, axis] * high / (80.0 * low)
+        file["VTKHDF/PointData/displacement"][...] = 0.0
+    (figure,) = laid_out("fields", result, "--quantity", "temperature", "yy")
+    axes, *_ = panels = panels_of(figure)
+    box = axes.get_window_extent()
+    drawn = box.width / np.ptp(axes.get_xlim()), box.height / np.ptp(axes.get_ylim())
+    stretch = {0: 0.1, 1: 10.0, None: 1.0}[axis]
+    assert drawn[1] / drawn[0] == pytest.approx(stretch, rel=1e-6)
+    assert ("stretched" in figure.get_supxlabel()) == bool(words)
+    assert words in figure.get_supxlabel()
+    bars = [each.get_tightbbox() for each in figure.axes if each not in panels]
+    places = [each.get_window_extent() for panel in panels for each in (panel, panel._left_title)]
+    assert len(bars) == len(panels) == 2
+    assert not any(bar.overlaps(place) for bar in bars for place in places)
+
+
 @pytest.mark.parametrize("lower", [0.0, 0.8])
 def test_a_line_is_named_below_the_fields_where_one_is_drawn(kept, result, lower):
     """There is none where each body yields everywhere or nowhere, nor outside of the window."""

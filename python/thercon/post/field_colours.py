@@ -186,7 +186,7 @@ def draw_bar(panels, layers):
     """Draw a colour bar beside panels, below wide ones, with arrows at the ends that values run past,
     and words of how far; it names the bodies whose it is."""
     axes, levels = panels[0], layers[0].levels
-    width, height = np.ptp(axes.get_xlim()), np.ptp(axes.get_ylim())
+    width, height = np.ptp(axes.get_xlim()), np.ptp(axes.get_ylim()) * axes.get_aspect()
     is_wide = width > WIDE * height
     across = 0.03 * max(width, height) / (height if is_wide else width) / len(panels)
     below, above = np.any([layer.beyond for layer in layers], axis=0)

@@ -53,6 +53,7 @@ TITLES = {
 }
 OF_AXES = {"xx": "Radial stress", "yy": "Axial stress", "zz": "Hoop stress", "xy": "Shear stress"}
 AMPLITUDE = 0.02  # of the size of the model: displacement of a mode that is drawn
+THIN, DRAWN = 20.0, 8.0  # ratio of the sides of a strip that is stretched, and about that drawn
 COLUMNS = 3  # of panels
 LOOKED_AT = 20  # times at most
 MOST_NAMED = 8  # increments
@@ -90,10 +91,11 @@ def draw_row(result, row, options):
         window = contact_window(result, moved, window)
     if options.window:
         window = given_window(options.window, window)
-    figure, panels = layout(len(fields), window)
+    stretch = stretch_of(window)
+    figure, panels = layout(len(fields), window * (1.0, stretch))
     layers, titles = [], titles_of(fields, result, panels[0])
     for axes, letter, (quantity, given) in zip(panels, ascii_lowercase, fields.items()):
-        mesh.frame(axes, window, result.units, cut=is_part)
+        mesh.frame(axes, window, result.units, cut=is_part, stretch=stretch)
         look = quantity, magnitude(result, quantity, step), options
         if quantity in CELL_FIELDS:
             layers.append(draw_elements(axes, result.cells, moved, given, look, window))
@@ -110,7 +112,8 @@ def draw_row(result, row, options):
         style.panel_title(axes, title, letter if len(fields) > 1 else "")
     draw_bars(panels.tolist(), layers)
     share_labels(panels)
-    words = [words_below(result, row, factor, MODE in fields), "; ".join(filter(None, lines_of_state))]
+    words = [words_below(result, row, factor, MODE in fields), stretch_words(stretch),
+             "; ".join(filter(None, lines_of_state))]
     figure.supxlabel("\n".join(filter(None, words)), fontsize=8.5)
     return style.write(
         figure,
@@ -163,6 +166,22 @@ def draw_front(axes, grid, fine, fraction):
     line = axes.tricontour(grid, fine.values(fraction.astype(float)), levels=[0.5], colors="black",
                            linewidths=1.4, linestyles="dashed")
     return "dashed line: solid fraction 0.5" if is_seen(axes, line) else ""
+
+
+def stretch_of(window):
+    """Return by how much y is stretched against x, lest a thin strip be a line."""
+    width, height = np.ptp(window, axis=0)
+    ratio = max(width, height) / min(width, height)
+    if ratio <= THIN:
+        return 1.0
+    by = float(f"{ratio / DRAWN:.1g}")
+    return by if width > height else 1.0 / by
+
+
+def stretch_words(stretch):
+    """Return along which axis a thin strip is stretched, and by how much."""
+    axis, by = ("y", stretch) if stretch > 1.0 else ("x", 1.0 / stretch)
+    return "" if stretch == 1.0 else f"${axis}$ stretched by {by:g}"
 
 
 def contact_window(result, moved, whole):

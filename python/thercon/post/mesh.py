@@ -107,15 +107,16 @@ def contact_window(contacts, cells, points):
     )
 
 
-def frame(axes, window, units, cut=False):
-    """Show the window at true proportions with labelled axes; boxed where it cuts the model."""
-    margin = 0.0 if cut else 0.035 * np.max(window[1] - window[0])
-    axes.set_aspect("equal")
+def frame(axes, window, units, cut=False, stretch=1.0):
+    """Show the window with labelled axes, y stretched against x; boxed where it cuts the model."""
+    width, height = np.ptp(window, axis=0) * (1.0, stretch)
+    margin = 0.0 if cut else 0.035 * max(width, height)
+    axes.set_aspect(stretch)
     axes.set_xlim(window[0, 0] - margin, window[1, 0] + margin)
-    axes.set_ylim(window[0, 1] - margin, window[1, 1] + margin)
+    axes.set_ylim(window[0, 1] - margin / stretch, window[1, 1] + margin / stretch)
     axes.set_xlabel(units.label("$x$", "length"))
     axes.set_ylabel(units.label("$y$", "length"))
-    aspect = np.ptp(window[:, 0]) / np.ptp(window[:, 1])
+    aspect = width / height
     labels = 6 if aspect >= 0.6 else int(np.clip(22.0 * aspect, 1, 3))  # that have room
     axes.locator_params(axis="x", nbins=labels, min_n_ticks=min(labels, 2))
     axes.locator_params(axis="y", min_n_ticks=1 if aspect > 10.0 else 2)
