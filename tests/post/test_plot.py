@@ -1162,7 +1162,7 @@ def test_titles_side_by_side_begin_on_one_height(laid_out, result):
     first, second = (axes._left_title.get_window_extent() for axes in panels_of(figure))
     assert second.y1 == pytest.approx(first.y1, abs=1.0)
     assert figure._supxlabel.get_text().endswith(
-        "\nthick line inside: edge of the plastic zone; dashed line: solid fraction 0.5")
+        "\nthick line inside: 1 % of the largest plastic strain; dashed line: solid fraction 0.5")
 
 
 @pytest.mark.parametrize(("axis", "words"), [(0, "$x$ stretched by 10"), (1, "$y$ stretched by 10"), (None, "")])
@@ -1196,7 +1196,7 @@ def test_a_line_is_named_below_the_fields_where_one_is_drawn(kept, result, lower
         count = len(file["VTKHDF/Points"])
         is_upper = np.arange(len(points["temperature"])) % count < count // 2
         points["equivalent_plastic_strain"] = np.where(is_upper, 1.0, lower)
-    words = "edge of the plastic zone"
+    words = "1 % of the largest plastic strain"
     (figure,) = kept("fields", result, "--quantity", "yy")
     assert words not in figure.get_supxlabel()
     with h5py.File(result, "r+") as file:

@@ -149,7 +149,7 @@ def outline_plastic_zone(axes, grid, fine, strain):
     if values.min() >= level:
         return ""
     line = axes.tricontour(grid, values, levels=[level], colors="black", linewidths=1.0)
-    return "thick line inside: edge of the plastic zone" if is_seen(axes, line) else ""
+    return "thick line inside: 1 % of the largest plastic strain" if is_seen(axes, line) else ""
 
 
 def is_seen(axes, line):
