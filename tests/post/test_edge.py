@@ -1,9 +1,11 @@
 """Fields along outlines, against fields and lengths that are known."""
 
 import csv
+import shutil
 import sys
 from pathlib import Path
 
+import h5py
 import numpy as np
 import pytest
 
@@ -71,6 +73,25 @@ def test_curved_sides_have_their_length(tmp_path):
     (tmp_path / "out").mkdir()
     _, found = table(tmp_path / "out", result, "--nodes", 300, 308)
     np.testing.assert_allclose(found["s"], 2.0 * angles, rtol=2e-4)
+
+
+def test_gaps_and_wear_are_drawn_along_a_face(usual, tmp_path, capsys):
+    """On both faces, nothing beside them; other pictures of fields have none."""
+    result = shutil.copy(usual, tmp_path)
+    with h5py.File(result, "r+") as file:
+        grid = file["VTKHDF"]
+        ids, x = grid["PointData/node_id"][:len(grid["Points"])], grid["Points"][:, 0]
+        face = file["contact/CYLINDER/slave_node"][()]
+        times = len(grid["Steps/Values"])
+        gap = np.where(np.isin(ids, face), 0.1 * x, np.nan)
+        grid["PointData/contact_gap"] = np.tile(gap, times)
+        grid["PointData/contact_wear_slave"] = np.tile(2.0 * gap, times)
+    (tmp_path / "out").mkdir()
+    _, found = table(tmp_path / "out", result, "--nodes", face[0], face[-1], "--quantity", "gap", "wear_slave")
+    np.testing.assert_allclose(found["gap"], 0.1 * found["x"])
+    np.testing.assert_allclose(found["wear_slave"], 2.0 * found["gap"])
+    assert plot(["fields", str(result), "--out", str(tmp_path), "--quantity", "gap"]) == 2
+    assert "no field 'gap'" in capsys.readouterr().err
 
 
 @pytest.mark.parametrize(("nodes", "message"), [

@@ -286,6 +286,17 @@ def test_courses_are_means_and_ranges_over_the_face_and_the_rates_of_the_model(d
     assert np.isnan(numbers(drawn["heat_stored"])[0])
 
 
+def test_courses_of_faces_that_wear_have_the_worn_volume(kept, result, tmp_path):
+    with h5py.File(result, "r+") as file:
+        volume = 1e-3 * file["history/load"][()]
+        contact = file["contact/CYLINDER"]
+        contact["worn_volume_slave"], contact["worn_volume_master"] = volume, 0.0 * volume
+    (figure,) = kept("courses", result)
+    (axes,) = [axes for axes in figure.axes if axes.get_ylabel() == "Worn volume (cm$^3$)"]
+    assert [text.get_text() for text in axes.get_legend().get_texts()] == ["slave"]
+    np.testing.assert_array_equal(numbers(table(tmp_path, "case.courses.csv")["worn_slave"]), volume)
+
+
 def test_legends_of_courses_hide_no_curve_and_no_title(laid_out, result):
     with h5py.File(result, "r+") as file:
         for k, name in enumerate(("in", "friction", "out", "stored", "dilatation")):

@@ -9,7 +9,7 @@ from . import (accuracy, branch, convergence, courses, edge, fields, history, me
                trade, zones)
 from .deck_changes import changed
 from .errors import UserError, nearest_name, program
-from .result import FIELD_SOURCES, MODE, Result
+from .result import FACE_SOURCES, FIELD_SOURCES, MODE, Result
 from .words import known_name
 
 SUMMARY = """Pictures of a thercon result: each call writes PNG and SVG.
@@ -193,8 +193,8 @@ def add_quantity(picture):
         action="append",
         type=field_name,
         metavar="QUANTITY ...",
-        help=f"panel to draw, or several, of {', '.join(FIELD_SOURCES)}, or as *VERIFY names them "
-        f"(default: those present of {', '.join(fields.USUAL[False])}; zz in place of yy for elements "
+        help=f"panel to draw, or several, of {', '.join(FIELD_SOURCES)}, for edge also "
+        f"{', '.join(FACE_SOURCES)}, or as *VERIFY names them (default: those present of {', '.join(fields.USUAL[False])}; zz in place of yy for elements "
         f"CPEG...; in axisymmetry {', '.join(fields.USUAL[True])})",
     )
 
@@ -243,10 +243,11 @@ def field_name(word):
     """Return the field that a word of the command line means."""
     if word.lower() == "mode_displacement":
         raise argparse.ArgumentTypeError(f"{word} is the shape that {MODE} is drawn on: choose that one")
-    name = known_name(word, FIELD_SOURCES)
-    if name not in FIELD_SOURCES:
-        raise argparse.ArgumentTypeError(f"invalid choice: '{word}'{nearest_name(word, FIELD_SOURCES)} "
-                                         f"(choose from {', '.join(FIELD_SOURCES)})")
+    names = [*FIELD_SOURCES, *FACE_SOURCES]
+    name = known_name(word, names)
+    if name not in names:
+        raise argparse.ArgumentTypeError(f"invalid choice: '{word}'{nearest_name(word, names)} "
+                                         f"(choose from {', '.join(names)})")
     return name
 
 

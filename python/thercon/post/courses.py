@@ -1,5 +1,7 @@
 """Courses over time or load: pressure, gap and temperatures of the faces, heat of the whole model."""
 
+from string import ascii_lowercase
+
 import numpy as np
 
 from . import style
@@ -11,12 +13,14 @@ LABELS = {
     "pressure": ("Pressure $p$", "stress"),
     "force": ("Force", "force"),
     "gap": ("Gap", "length"),
+    "worn": ("Worn volume", "volume"),
     "temperature": ("Temperature of the faces", "temperature"),
     "heat": ("Heat rate", "power"),
 }
 HEAT = {"heat_in": "into the model", "heat_friction": "of friction", "heat_out": "out of it",
         "heat_stored": "stored", "heat_dilatation": "taken up by strains"}
 FORCES = {"normal_force": "normal", "shear_force": "of friction"}   # of faces that slide
+WORN = {"worn_volume_slave": "slave", "worn_volume_master": "master"}
 FACES = {"slave_temperature": "slave", "master_temperature": "master"}
 MEANS = "Lines are means over {}"
 BANDS = ", bands reach from the smallest to the largest value"
@@ -66,6 +70,7 @@ class Picture:
         if self.contact.slides:
             panels["force"] = [(words, self.contact.get(key)) for key, words in FORCES.items()]
         panels["gap"] = [("", self.contact.get("gap"))]
+        panels["worn"] = [(words, self.contact.get(key)) for key, words in WORN.items()]
         panels["temperature"] = [(words, self.contact.get(key)) for key, words in FACES.items()]
         heat = [(words, self.result.history.get(key)) for key, words in HEAT.items()]
         through = "through the contact" if not self.contact.parts else "sum over the interfaces"
@@ -79,13 +84,13 @@ class Picture:
         """Return the finished figure: two panels a row, one axis of time or load."""
         rows = -(-len(self.panels) // 2)
         columns = min(2, len(self.panels))
-        legends = [-(-len(curves) // COLUMNS) * (len(curves) > 1) for curves in self.panels.values()]
+        legends = [-(-len(curves) // COLUMNS) * has_names(curves) for curves in self.panels.values()]
         above = sum(max(legends[row : row + 2]) for row in range(0, len(legends), 2))
         figure, grid = plt.subplots(
             rows, columns, sharex=True, layout="constrained", squeeze=False,
             figsize=(style.DOUBLE_COLUMN * 0.5 * columns, 0.4 + 2.1 * rows + LEGEND_LINE * above),
         )
-        for axes, (name, curves), letter in zip(grid.flat, self.panels.items(), "abcde"):
+        for axes, (name, curves), letter in zip(grid.flat, self.panels.items(), ascii_lowercase):
             if name == "heat" and self.log:
                 curves = sizes(curves)
                 self.spread(axes, curves)
@@ -123,7 +128,7 @@ class Picture:
             if values.ndim == 2:
                 style.band(axes, self.at, *ends(values), colour)
             axes.plot(self.at, self.mean(values), color=colour, ls=line, label=words or None)
-        if len(curves) > 1:
+        if has_names(curves):
             axes.legend(**RIGHT_ABOVE, ncols=COLUMNS, handlelength=1.8, columnspacing=1.2)
         low, high = axes.get_ylim()
         if low < 0.0 and all(np.nanmin(values) >= -1e-6 * high for _, values in curves):
@@ -157,6 +162,11 @@ class Picture:
                 if values.ndim == 2:
                     columns |= dict(zip((f"{key}_min", f"{key}_max"), ends(values)))
         return columns
+
+
+def has_names(curves):
+    """Whether a legend tells curves apart, or what the only one is of."""
+    return any(words for words, _ in curves)
 
 
 def ends(values):

@@ -10,7 +10,7 @@ from . import style
 from .cells import curves
 from .errors import UserError
 from .fields import read_fields, title_of
-from .result import CELL_FIELDS
+from .result import CELL_FIELDS, FACE_SOURCES
 from .style import plt
 
 PIECES = 16  # into which a side is divided for its length
@@ -23,7 +23,7 @@ def draw(result, options):
         raise UserError(f"{elementwise[0]} is a field of elements and has no values along an edge")
     points, s, turns = way(result, options.nodes)
     rows = result.rows(options.load, options.increment, with_fields=True)
-    fields = [read_fields(result, result.field_row(row), options.quantity) for row in rows]
+    fields = [read_fields(result, result.field_row(row), options.quantity, FACE_SOURCES) for row in rows]
     keys = [key for key in fields[-1] if all(key in each for each in fields)]
     table = {"load": np.repeat(result.history["load"][rows], len(points)),
              "node": np.tile(result.cells.node_id[points], len(rows)), "s": np.tile(s, len(rows)),

@@ -50,6 +50,10 @@ TITLES = {
     "stress_error": ("Estimated error of stress", "stress"),
     "heat_flux_error": ("Estimated error of heat flux", "flux"),
     MODE: ("Temperature of the leading mode", None),
+    "pressure": ("Pressure $p$", "stress"),
+    "gap": ("Gap", "length"),
+    "wear_slave": ("Wear of the slave", "length"),
+    "wear_master": ("Wear of the master", "length"),
 }
 OF_AXES = {"xx": "Radial stress", "yy": "Axial stress", "zz": "Hoop stress", "xy": "Shear stress"}
 AMPLITUDE = 0.02  # of the size of the model: displacement of a mode that is drawn
@@ -300,9 +304,10 @@ def name_of(result, row, options):
     return style.file_name(result, "fields", *parts)
 
 
-def read_fields(result, step, quantities):
-    """Return {quantity: values over points or elements} for those asked for, or the usual ones."""
-    there = {q: result.field(q, step) for q in FIELD_SOURCES}
+def read_fields(result, step, quantities, of_faces=()):
+    """Return {quantity: values over points or elements} for those asked for, or the usual ones; of
+    faces, those named."""
+    there = {q: result.field(q, step) for q in (*FIELD_SOURCES, *of_faces)}
     there = {q: v for q, v in there.items() if v is not None and np.isfinite(v).any()}
     for quantity in quantities or ():
         if quantity not in there:

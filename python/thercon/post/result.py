@@ -43,6 +43,8 @@ FIELD_SOURCES = {
     "heat_flux_error": ("heat_flux_error", None),
     MODE: (MODE, None),
 }
+# Of contact points, at nodes of both faces and NaN at others.
+FACE_SOURCES = {name: (f"contact_{name}", None) for name in ("pressure", "gap", "wear_slave", "wear_master")}
 
 
 # Datasets of a contact that hold one value a contact point.
@@ -701,7 +703,7 @@ class Result:
     def source(self, quantity, step):
         """Return the array that a picture quantity is of, with all components, NaN at nodes of no
         element; None where it is absent."""
-        name = FIELD_SOURCES[quantity][0]
+        name = (FIELD_SOURCES | FACE_SOURCES)[quantity][0]
         if quantity in CELL_FIELDS:
             return self.cell_data(name, step)
         values = self.point_data(name, step)
@@ -724,7 +726,7 @@ class Result:
     def field(self, quantity, step):
         """Return a picture quantity over points or elements at a time step; None where it is
         absent."""
-        _, component = FIELD_SOURCES[quantity]
+        _, component = (FIELD_SOURCES | FACE_SOURCES)[quantity]
         values = self.source(quantity, step)
         if quantity == "solid_fraction" and values is not None:
             values = np.where(self.melts, values, np.nan)

@@ -22,6 +22,8 @@ class Units:
                           and (quantity != "time" or quantity in self.names)), None)
         if {"power", "length"} <= set(self.names):
             self.names["flux"] = f"{self.names['power']}/{self.names['length']}$^2$"
+        if "length" in self.names:
+            self.names["volume"] = f"{self.names['length']}$^3$"
         if {"stress", "length"} <= set(self.names):
             force = f"{self.names['stress']} {self.names['length']}^2"
             self.names["force"] = NEWTON.get(force, force.replace("^2", "$^2$"))
