@@ -364,8 +364,8 @@ contains
          words = words//', the smallest that the step allows'
          if (self%cut_backs > 0) words = words//', after '//counted(self%cut_backs, 'cut-back')
          if (model%steps(self%step)%smallest_increment > smallest_part*model%steps(self%step)% &
-            period) words = words//'; give a shorter smallest increment, the third value of the '// &
-            'step''s times'
+            period) words = words//'; give a shorter smallest increment, the third value of '// &
+            'the step''s times'
       end if
    end function why_not_again
 
