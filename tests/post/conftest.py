@@ -33,9 +33,9 @@ def coarse_pictures(request, monkeypatch):
                             else save(figure, path, **options))
 
 
-@pytest.fixture(scope="module")
+@pytest.fixture(scope="session")
 def browser():
-    """Return a headless browser."""
+    """Return a headless browser; to start one takes longer than to draw a page."""
     with Browser() as opened:
         yield opened
 

@@ -12,7 +12,6 @@ import pytest
 TESTS = Path(__file__).resolve().parents[1]
 sys.path[:0] = [str(TESTS / "decks"), str(TESTS.parent / "python")]
 
-from browser import Browser  # noqa: E402
 from deck_runs import INPUT, solve  # noqa: E402
 
 from thercon.post.branch import parts  # noqa: E402
@@ -60,7 +59,7 @@ def test_picture_has_all_points_and_the_quantity_asked_for(result, tmp_path):
         assert (tmp_path / f"{name}.png").exists()
 
 
-def test_a_point_of_a_branch_has_one_time_and_its_load_factor(result, tmp_path):
+def test_a_point_of_a_branch_has_one_time_and_its_load_factor(result, tmp_path, browser):
     """The load axis is the time, as nothing else is asked for; so all pictures and tables say."""
     with Result(result) as opened:
         last = opened.increments - 1
@@ -69,10 +68,8 @@ def test_a_point_of_a_branch_has_one_time_and_its_load_factor(result, tmp_path):
     times, loads = zip(*re.findall(r"^INCREMENT \d+ +STEP \d+ +TIME (\S+) +LOAD (\S+)", listing, re.M))
     assert times == loads
     assert report([str(result), "--out", str(tmp_path)]) == 0
-    with Browser() as browser:
-        browser.open(tmp_path / "r3.html")
-        assert browser.run("return document.getElementById('now').textContent").endswith(
-            ", load factor 1.5")
+    browser.open(tmp_path / "r3.html")
+    assert browser.run("return document.getElementById('now').textContent").endswith(", load factor 1.5")
 
 
 def test_unknown_quantity_and_a_result_without_a_branch_are_errors(result, tmp_path, capsys):
@@ -85,13 +82,12 @@ def test_unknown_quantity_and_a_result_without_a_branch_are_errors(result, tmp_p
     assert "its deck has no *CONTINUATION" in capsys.readouterr().err
 
 
-def test_page_draws_quantities_over_the_load_factor(result, tmp_path):
+def test_page_draws_quantities_over_the_load_factor(result, tmp_path, browser):
     assert report([str(result), "--out", str(tmp_path)]) == 0
-    with Browser() as browser:
-        browser.open(tmp_path / "r3.html")
-        words, dashes = browser.run(
-            """const all = document.getElementById('history-0');
-            return [all.textContent, [...all.querySelectorAll('svg path[stroke="var(--blue)"]')]
-                .map(line => line.getAttribute('stroke-dasharray'))]""")
+    browser.open(tmp_path / "r3.html")
+    words, dashes = browser.run(
+        """const all = document.getElementById('history-0');
+        return [all.textContent, [...all.querySelectorAll('svg path[stroke="var(--blue)"]')]
+            .map(line => line.getAttribute('stroke-dasharray'))]""")
     assert "Load factor" in words and "unstable: an odd number of modes grows" in words
     assert "5 3" in dashes and "" in dashes

@@ -1,5 +1,6 @@
 """post: names of files that are no UTF-8, hostile texts in pictures, files that ask for others."""
 
+import csv
 import os
 import subprocess
 import sys
@@ -65,17 +66,21 @@ def test_a_message_names_such_a_file_by_its_bytes(tmp_path):
         (2, b"", b"plot: error: joint\xff.vtkhdf: no such file\n")
 
 
-def test_a_mistake_of_the_program_is_told_in_one_line_or_in_full(result):
-    """It is planted: a module of the standard library that ends every picture."""
-    (result / "sitecustomize.py").write_text(
-        "import csv\ndef writer(*_, **__): raise KeyError('planted\\nhere')\ncsv.writer = writer\n")
-    status, out, said = call(result, "plot", "zones", "--csv", NAME, PYTHONPATH=str(result))
-    assert status == 2 and said.count(b"\n") == 1
-    assert said.startswith(b"plot: error: joint\xff.vtkhdf: cannot be evaluated (KeyError: ")
-    assert b"at tables.py:" in said and b"THERCON_TRACEBACK=1" in said
-    status, out, said = call(result, "plot", "zones", "--csv", NAME, PYTHONPATH=str(result),
-                             THERCON_TRACEBACK="1")
-    assert status == 1 and said.startswith(b"Traceback") and b"planted" in said
+def test_a_mistake_of_the_program_is_told_in_one_line_or_in_full(usual, tmp_path, monkeypatch, capsys):
+    """It is planted where every table is written."""
+    def writer(*_, **__):
+        raise KeyError("planted\nhere")
+
+    monkeypatch.setattr(csv, "writer", writer)
+    arguments = ["zones", "--csv", str(usual), "--out", str(tmp_path)]
+    assert main(arguments) == 2
+    said = capsys.readouterr().err
+    assert said.count("\n") == 1
+    assert said.startswith(f"plot: error: {usual}: cannot be evaluated (KeyError: ")
+    assert "at tables.py:" in said and "THERCON_TRACEBACK=1" in said
+    monkeypatch.setenv("THERCON_TRACEBACK", "1")
+    with pytest.raises(KeyError, match="planted"):
+        main(arguments)
 
 
 @pytest.mark.vectors

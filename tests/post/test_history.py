@@ -16,7 +16,6 @@ import pytest
 TESTS = Path(__file__).resolve().parents[1]
 sys.path[:0] = [str(TESTS / each) for each in ("decks", "reference")] + [str(TESTS.parent / "python")]
 
-from browser import Browser  # noqa: E402
 from physics import material, mesh  # noqa: E402
 from synthetic import write_result  # noqa: E402
 from test_prints import BODY, HELD, static  # noqa: E402
@@ -179,24 +178,23 @@ def test_the_page_has_a_chart_of_each_quantity(result, tmp_path):
     assert [curve["name"] for curve in total["curves"]] == [""]
 
 
-def test_the_browser_draws_the_curves(result, tmp_path):
+def test_the_browser_draws_the_curves(result, tmp_path, browser):
     """A curve for each node of a set, with its name below, and three of many points."""
     assert report([str(result), "--out", str(tmp_path)]) == 0
     entries = page_data(tmp_path / "deck.html")["history"]
-    with Browser() as browser:
-        browser.open(tmp_path / "deck.html")
-        for k, each in enumerate(entries):
-            if "curves" not in each:
-                continue
-            lines, names, caption = browser.run(
-                "const chart = document.getElementById('history-' + arguments[0]);"
-                "return [chart.querySelectorAll('g path[fill=none]').length, "
-                "[...chart.querySelectorAll('svg > text')].map(e => e.textContent), "
-                "chart.querySelector('figcaption').textContent];", k)
-            assert lines == len(each["curves"])
-            assert {curve["name"] for curve in each["curves"]} - {""} <= set(names)
-            assert caption.startswith(each["label"])
-        assert not browser.messages()
+    browser.open(tmp_path / "deck.html")
+    for k, each in enumerate(entries):
+        if "curves" not in each:
+            continue
+        lines, names, caption = browser.run(
+            "const chart = document.getElementById('history-' + arguments[0]);"
+            "return [chart.querySelectorAll('g path[fill=none]').length, "
+            "[...chart.querySelectorAll('svg > text')].map(e => e.textContent), "
+            "chart.querySelector('figcaption').textContent];", k)
+        assert lines == len(each["curves"])
+        assert {curve["name"] for curve in each["curves"]} - {""} <= set(names)
+        assert caption.startswith(each["label"])
+    assert not browser.messages()
 
 
 def test_times_and_temperatures_have_their_units(usual, tmp_path):
