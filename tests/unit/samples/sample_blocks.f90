@@ -25,9 +25,10 @@ contains
    !> elements 5-8, section 2), each of 2 x 2 elements with moved inner nodes. One static step.
    function two_blocks(friction, conductance) result(model)
       real(dp), intent(in) :: friction, conductance
-      type(model_type) :: model
+      type(model_type), pointer :: model
       integer :: i
 
+      allocate (model)
       allocate (model%mesh%coordinates(2, 42), model%mesh%element_nodes(8, 8))
       allocate (model%mesh%element_kind(8), source=quad8)
       allocate (model%mesh%element_plane(8), source=plane_strain)
