@@ -13,6 +13,7 @@ add_library(funit_standin STATIC
    "${FUNIT_STANDIN_DIR}/funit_reals.f90"
    "${FUNIT_STANDIN_DIR}/funit_results.f90")
 set_target_properties(funit_standin PROPERTIES
+   Fortran_PREPROCESS OFF
    Fortran_MODULE_DIRECTORY "${CMAKE_CURRENT_BINARY_DIR}/funit_modules")
 target_include_directories(funit_standin PUBLIC "${CMAKE_CURRENT_BINARY_DIR}/funit_modules")
 target_link_libraries(funit_standin PRIVATE thercon_language thercon_checks)
@@ -32,7 +33,7 @@ function(add_pfunit_ctest name)
       cmake_path(ABSOLUTE_PATH test_source BASE_DIRECTORY "${CMAKE_CURRENT_SOURCE_DIR}")
       cmake_path(GET test_source STEM module)
       list(APPEND test_sources "${test_source}")
-      list(APPEND sources "${folder}/${module}.F90")
+      list(APPEND sources "${folder}/${module}.f90")
       string(APPEND calls "   call ${module}_suite()\n")
    endforeach()
    # One process for all: starting Python takes longer than its work.
@@ -50,6 +51,7 @@ function(add_pfunit_ctest name)
    add_executable(${name} ${sources} ${arg_OTHER_SOURCES}
       "${folder}/${name}_driver.f90")
    set_target_properties(${name} PROPERTIES
+      Fortran_PREPROCESS OFF
       Fortran_MODULE_DIRECTORY "${folder}")
    target_include_directories(${name} PRIVATE "${CMAKE_CURRENT_SOURCE_DIR}")
    target_link_libraries(${name} PRIVATE funit_standin ${arg_LINK_LIBRARIES})

@@ -110,7 +110,7 @@ def main():
     folder = Path(sys.argv[1])
     try:
         for source in map(Path, sys.argv[2:]):
-            target, text = folder / f"{source.stem}.F90", convert(source.read_text(), source)
+            target, text = folder / f"{source.stem}.f90", convert(source.read_text(), source)
             if not target.exists() or target.read_text() != text:
                 target.write_text(text)
     except SourceError as error:
