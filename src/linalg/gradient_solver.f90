@@ -66,6 +66,7 @@ contains
       class(gradient_solver_type), intent(inout) :: self
       type(sparse_matrix_type), intent(in) :: lower
       type(error_type), allocatable, intent(out) :: error
+      logical :: is_solved
       real(dp) :: load(self%order)
 
       call check_pattern(self, lower, error)
@@ -77,8 +78,10 @@ contains
       self%smallest_pivot = 1.0_dp
       call factor_incompletely(self)
       load = 1.0_dp
-      if (self%iterates) call iterate(self, trial_steps, trial_tolerance, 0.0_dp, load, &
-         self%iterates)
+      if (self%iterates) then
+         call iterate(self, trial_steps, trial_tolerance, 0.0_dp, load, is_solved)
+         self%iterates = is_solved
+      end if
       if (.not. self%iterates) call factor_directly(self, lower, error)
    end subroutine factor
 
