@@ -4,5 +4,5 @@
 # Results must be the same wherever the program is built: no -march=native, no -ffast-math, no
 # contraction of products and sums to fused operations.
 if(CMAKE_Fortran_COMPILER_ID STREQUAL "GNU")
-   set(CMAKE_Fortran_FLAGS_RELEASE_INIT "-O1 -g1 -ffp-contract=off")
+   set(CMAKE_Fortran_FLAGS_RELEASE_INIT "-Og -ffrontend-optimize -g1 -ffp-contract=off")
 endif()

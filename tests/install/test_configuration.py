@@ -23,8 +23,8 @@ def default(tmp_path_factory):
 
 
 def test_flags_of_the_release_are_those_named(default, tmp_path):
-    assert "FLAGS = -O1 -g1 -ffp-contract=off" in default
-    assert re.search("FLAGS = -O1 .* -O3$", default, re.M)   # kernels
+    assert "FLAGS = -Og -ffrontend-optimize -g1 -ffp-contract=off" in default
+    assert re.search("FLAGS = -Og .* -O3$", default, re.M)   # kernels
     named = configure(tmp_path, "-DCMAKE_Fortran_FLAGS_RELEASE=-O2 -g",
                       "-DCMAKE_C_FLAGS_RELEASE=-O2")
     assert "FLAGS = -O2 -g " in named
