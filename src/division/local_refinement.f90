@@ -402,8 +402,8 @@ contains
       end associate
    end function to_point
 
-   !> The largest values, as many as have a part of the sum of all, and those like the least of them:
-   !> rounding chooses none.
+   !> The largest values, as many as have a part of the sum of all, and those like the least of
+   !> them: rounding chooses none.
    pure function largest_part(values, part) result(chosen)
       real(dp), intent(in) :: values(:)     !! not negative
       real(dp), intent(in) :: part          !! of their sum
