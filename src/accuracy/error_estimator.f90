@@ -39,7 +39,7 @@ module error_estimator
    !> Part of the squared recovered error of stress and of flux, in every body, that the elements
    !> have which are divided.
    real(dp), parameter :: divided_part = 0.95_dp
-   real(dp), parameter :: rounding = 1.0e-20_dp   !! of squared errors
+   real(dp), parameter :: rounding = 1.0e-20_dp   !! part of the largest squared error
 
    !> Relative difference of quantities that the fixed point leaves
    real(dp), parameter :: same = 1.0e-5_dp
@@ -176,8 +176,11 @@ contains
       real(dp), dimension(size(chosen)) :: of_flux, of_stress
       integer :: b
 
-      of_flux = resolved(squared_errors(mesh, record%heat_flux_error))
-      of_stress = resolved(squared_errors(mesh, record%stress_error))
+      of_flux = squared_errors(mesh, record%heat_flux_error)
+      of_stress = squared_errors(mesh, record%stress_error)
+      ! A body without heat or stress has errors that are rounding of those elsewhere.
+      where (of_flux <= rounding*maxval(of_flux)) of_flux = 0.0_dp
+      where (of_stress <= rounding*maxval(of_stress)) of_stress = 0.0_dp
       chosen = .false.
       do b = 1, mesh%body_count
          associate (is_own => mesh%element_body == b)
@@ -186,15 +189,6 @@ contains
          end associate
       end do
    end function err_most
-
-   !> Squared errors that are no rounding of the largest one: a body that a stress leaves alone has
-   !> such errors.
-   pure function resolved(errors)
-      real(dp), intent(in) :: errors(:)                      ! (elements)
-      real(dp) :: resolved(size(errors))
-
-      resolved = merge(errors, 0.0_dp, errors > rounding*max(0.0_dp, maxval(errors)))
-   end function resolved
 
    !> Uncertainties of the quantities of interfaces.
    subroutine judge_interfaces(self, model, simulation, record)

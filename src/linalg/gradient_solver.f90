@@ -13,7 +13,7 @@ module gradient_solver
    public :: gradient_solver_type
 
    ! How fast they converge is tried with a uniform load, whose solution is smooth. So many steps
-   ! would be some 70 to the end, which take as long as factors.
+   ! would be some 70 to the end, which take about as long as factors.
    integer, parameter :: trial_steps = 8
    real(dp), parameter :: trial_tolerance = 0.05_dp
    integer, parameter :: most_steps = 1000

@@ -103,6 +103,14 @@ def test_change_of_the_last_increment_alone(tmp_path, held):
         assert FACTOR * abs(fine[name][0] - value) == pytest.approx(change, rel=0.05), name
 
 
+def test_a_body_without_stress_has_no_rounding_of_it(tmp_path):
+    """Elements round the place of the largest stress are divided: that of rounding is another one on
+    each processor."""
+    body = errors(solve(bent_on_a_block(tmp_path / "held.inp", [], held="B")), "body 2")
+    value, _, change, *_ = body["von_mises"]
+    assert value == change == 0.0
+
+
 def test_a_later_step_divides_the_elements_at_its_contact(tmp_path):
     """A block is pressed at its left end, then at its right one; without friction it does not remember
     the first step: the uncertainties are those of a deck with the second alone."""
