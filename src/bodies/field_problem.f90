@@ -250,22 +250,12 @@ contains
       type(field_problem_type), intent(in) :: problem     !! that it is of
       real(dp), intent(in) :: diagonal(:)                 !! (dofs) not negative
       type(error_type), allocatable, intent(out) :: error
-      type(sparse_matrix_type) :: part
-      integer, allocatable :: dofs(:)
-      integer :: i, n
 
       if (all(abs(self%diagonal - diagonal) <= 0.0_dp)) return
       self%diagonal = diagonal
-      n = size(diagonal)
-      dofs = pack([(i, i=1, n)], diagonal > 0.0_dp)
-      part = sparse_matrix_type(n, n, spread(1, 1, n + 1), dofs, diagonal(dofs))
-      do i = 1, n
-         part%row_start(i + 1) = part%row_start(i) + merge(1, 0, diagonal(i) > 0.0_dp)
-      end do
       select type (solver => self%solver)
       type is (gradient_solver_type)
-         call solver%add(problem%map%transform(part, 0.0_dp*problem%map%link_stiffness( &
-            problem%matrix)), error)
+         call solver%add(problem%map%by_unknowns, diagonal, error)
       class default
          call set_error(error, status_internal, 'a diagonal stands beside a matrix with factors')
       end select

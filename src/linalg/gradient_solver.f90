@@ -6,7 +6,8 @@ module gradient_solver
    use errors, only: error_type, set_error, status_no_convergence
    use kinds, only: dp, long
    use linear_solver, only: check_pattern, linear_solver_type
-   use sparse_matrix, only: linear_combination, sparse_matrix_type
+   use sparse_matrix, only: sparse_matrix_type
+   use sum_lists, only: sum_list_type
    use text, only: to_text
    implicit none
    private
@@ -22,6 +23,8 @@ module gradient_solver
    real(dp), parameter :: tolerance = 1.0e-11_dp, rough = 1.0e-3_dp, of_rates = 1.0e-11_dp
    !> Pivot over diagonal entry below which incomplete factors take the entry
    real(dp), parameter :: least_pivot = 1.0e-3_dp
+   !> Part by which a pivot may change without rows below it
+   real(dp), parameter :: hardly = 0.01_dp
 
    !> A matrix without a tail, with a part beside it, and L of incomplete factors L L^T of both or
    !> factors by another solver.
@@ -33,6 +36,7 @@ module gradient_solver
       type(sparse_matrix_type), private :: alone         !! as it was given, the lower triangle
       type(sparse_matrix_type), private :: lower         !! with the part
       real(dp), allocatable, private :: factors(:)       !! L; 1/L_ii on the diagonal
+      real(dp), allocatable, private :: followed(:)      !! 1/L_ii that rows below it follow
    contains
       procedure :: analyse
       procedure :: factor
@@ -74,9 +78,11 @@ contains
       self%schur = reshape([real(dp) ::], [0, 0])
       self%alone = lower
       self%lower = lower
+      self%lower%value(:) = 0.0_dp
+      self%followed = spread(0.0_dp, 1, self%order)
       self%factor_bytes = 2*storage_size(1.0_dp)/8*size(lower%value, kind=long)
       self%smallest_pivot = 1.0_dp
-      call factor_incompletely(self)
+      call factor_incompletely(self, lower%value)
       load = 1.0_dp
       if (self%iterates) then
          call iterate(self, trial_steps, trial_tolerance, 0.0_dp, load, is_solved)
@@ -85,30 +91,40 @@ contains
       if (.not. self%iterates) call factor_directly(self, lower, error)
    end subroutine factor
 
-   !> Factors the matrix that was given last with a positive semidefinite part beside it, within its
-   !> pattern. With that gradients are no slower.
+   !> Factors the matrix that was given last with T^T D T beside it, within its pattern; D is
+   !> diagonal and not negative. With that gradients are no slower.
    !> Errors: as factor.
-   subroutine add(self, part, error)
+   subroutine add(self, terms, diagonal, error)
       class(gradient_solver_type), intent(inout) :: self
-      type(sparse_matrix_type), intent(in) :: part           !! (order, order) lower triangle
+      type(sum_list_type), intent(in) :: terms               !! (n, order) T
+      real(dp), intent(in) :: diagonal(:)                    !! (n) D
       type(error_type), allocatable, intent(out) :: error
-      integer :: i, k, place
+      real(dp) :: value(size(self%alone%value))
+      integer :: i, k, l, place
 
-      if (.not. self%iterates) then
-         call factor_directly(self, linear_combination(1.0_dp, self%alone, 1.0_dp, part), error)
-         return
-      end if
-      associate (lower => self%lower)
-         lower%value(:) = self%alone%value
-         do i = 1, self%order
-            do k = part%row_start(i), part%row_start(i + 1) - 1
-               place = lower%row_start(i) - 1 + findloc(lower%column(lower%row_start(i): &
-                  lower%row_start(i + 1) - 1), part%column(k), dim=1)
-               lower%value(place) = lower%value(place) + part%value(k)
+      value = self%alone%value
+      associate (start => self%lower%row_start)
+         do i = 1, size(diagonal)
+            if (diagonal(i) <= 0.0_dp) cycle
+            do k = terms%start(i), terms%start(i + 1) - 1
+               associate (row => terms%value(k))
+                  do l = terms%start(i), terms%start(i + 1) - 1
+                     if (terms%value(l) > row) cycle
+                     place = start(row) - 1 + findloc(self%lower%column(start(row):start(row + 1) &
+                        - 1), terms%value(l), dim=1, back=.true.)
+                     value(place) = value(place) + diagonal(i)*terms%coefficient(k)* &
+                        terms%coefficient(l)
+                  end do
+               end associate
             end do
          end do
       end associate
-      call factor_incompletely(self)
+      if (self%iterates) then
+         call factor_incompletely(self, value)
+      else
+         self%lower%value(:) = value
+         call factor_directly(self, self%lower, error)
+      end if
    end subroutine add
 
    !> Factors with the other solver.
@@ -131,37 +147,45 @@ contains
       self%lost_unknown = self%direct%lost_unknown
    end subroutine factor_directly
 
-   !> Finds incomplete factors, row by row, if the diagonal is positive: L_ij L_jj = A_ij - sum of
-   !> L_ik L_jk over k < j.
-   pure subroutine factor_incompletely(self)
+   !> Finds incomplete factors of new values, row by row, if the diagonal is positive: L_ij L_jj =
+   !> A_ij - sum of L_ik L_jk over k < j. Rows stay that have their values, and follow pivots that
+   !> have hardly changed.
+   pure subroutine factor_incompletely(self, value)
       type(gradient_solver_type), intent(inout) :: self
-      real(dp) :: row(self%order)                    ! L_ij, zero where it has no entry
+      real(dp), intent(in) :: value(:)               ! of the lower triangle
+      logical :: changes(self%order)                 ! pivots
+      real(dp) :: own, row(self%order)               ! L_ij, zero where it has no entry
       integer :: i, j, k, l
 
-      if (.not. allocated(self%factors)) allocate (self%factors(size(self%lower%value)))
-      self%iterates = .true.
+      if (.not. allocated(self%factors)) allocate (self%factors(size(value)))
+      changes = .false.
       row = 0.0_dp
-      associate (start => self%lower%row_start, column => self%lower%column, value => &
-         self%lower%value, factors => self%factors)
+      associate (start => self%lower%row_start, column => self%lower%column, factors => &
+         self%factors)
+         ! The last entry of a row of the lower triangle is that on the diagonal.
+         self%iterates = all(value(start(2:) - 1) > 0.0_dp)
          do i = 1, self%order
-            ! The last entry of a row of the lower triangle is that on the diagonal.
             associate (first => start(i), diagonal => start(i + 1) - 1)
-               self%iterates = self%iterates .and. value(diagonal) > 0.0_dp
-               factors(diagonal) = value(diagonal)
+               if (all(abs(value(first:diagonal) - self%lower%value(first:diagonal)) <= 0.0_dp) &
+                  .and. .not. any(changes(column(first:diagonal)))) cycle
                do k = first, diagonal - 1
                   row(column(k)) = value(k)
                end do
+               factors(diagonal) = value(diagonal)
                do k = first, diagonal - 1
                   j = column(k)
+                  own = row(j)
                   do l = start(j), start(j + 1) - 2
-                     row(j) = row(j) - factors(l)*row(column(l))
+                     own = own - factors(l)*row(column(l))
                   end do
-                  row(j) = row(j)*factors(start(j + 1) - 1)
+                  row(j) = own*factors(start(j + 1) - 1)
                   factors(diagonal) = factors(diagonal) - row(j)**2
                end do
                if (factors(diagonal) < least_pivot*value(diagonal)) factors(diagonal) = &
                   value(diagonal)
                factors(diagonal) = 1.0_dp/sqrt(max(factors(diagonal), tiny(row)))
+               changes(i) = abs(factors(diagonal) - self%followed(i)) > hardly*factors(diagonal)
+               if (changes(i)) self%followed(i) = factors(diagonal)
                do k = first, diagonal - 1
                   factors(k) = row(column(k))
                   row(column(k)) = 0.0_dp
@@ -169,6 +193,7 @@ contains
             end associate
          end do
       end associate
+      self%lower%value(:) = value
    end subroutine factor_incompletely
 
    !> Solves for a right-hand side.

@@ -13,7 +13,8 @@
 module melting
    use element_kinds, only: element_node_count
    use kinds, only: dp
-   use materials, only: heat_capacity, latent_content, melted_to, melts, solid_fraction
+   use materials, only: heat_capacity, latent_content, material_type, melted_to, melting_row, melts, &
+      solid_fraction
    use mesh, only: nodes_per_element
    use model, only: model_type
    use sparse_matrix, only: sparse_matrix_type
@@ -28,6 +29,7 @@ module melting
 
    integer, parameter :: most_sweeps = 24        !! that foresee a front
    integer, parameter :: most_elements = 2       !! that a front passes in a stage as foreseen
+   real(dp), parameter :: faster = 2.0_dp        !! than foreseen changes are those that find a front
    integer, parameter :: quiet_sweeps = 4        !! in which no node enters or leaves an interval
    real(dp), parameter :: resting = 1.0e-4_dp    !! part of a node's latent heat that moves none
 
@@ -108,16 +110,33 @@ contains
       do i = 1, size(self%nodes)
          associate (node => self%nodes(i))
             associate (material => model%materials(node%material), there => temperature(node%node))
+               node%at_front = .not. is_foreseen .or. comes_to_turn(material, start(node%node), &
+                  change(node%node))
+               if (.not. node%at_front) then
+                  node%at = there
+                  node%row = melting_row(material, there)
+                  cycle
+               end if
                latent = latent_content(material, start(node%node))
                call melted_to(material, heat_capacity(material), there + heat(node%node)/( &
                   heat_capacity(material)*node%volume), latent, node%at, node%row)
                there = node%at
-               node%at_front = node%row > 0 .or. .not. is_foreseen .or. abs(latent - &
-                  latent_content(material, there)) > 0.0_dp
             end associate
          end associate
       end do
    end subroutine begin
+
+   !> Whether a temperature may come to a solidus or liquidus.
+   pure logical function comes_to_turn(material, temperature, change)
+      type(material_type), intent(in) :: material
+      real(dp), intent(in) :: temperature                    ! at the start of a stage
+      real(dp), intent(in) :: change                         ! as foreseen
+
+      associate (melting => material%melting, there => temperature, reach => faster*abs(change))
+         comes_to_turn = any(abs(melting%solidus - there) <= reach .or. &
+            abs(melting%liquidus - there) <= reach)
+      end associate
+   end function comes_to_turn
 
    !> Foresees T' at the end of a stage by sweeps to and fro over the equation of heat without
    !> melting, which solve the row of a node together with its latent heat (Gauss and Seidel). Nodes
