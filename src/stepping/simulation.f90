@@ -235,18 +235,20 @@ contains
       type(error_type), allocatable, intent(out) :: error
       integer :: i
 
-      if (.not. self%heat_reductions(self%in_use)%serves(self%bodies, film) .and. &
-         model%steps(self%control%step)%is_transient) then
-         do i = 1, size(self%heat_reductions)
-            if (self%heat_reductions(i)%serves(self%bodies, film)) exit
-         end do
-         if (i > size(self%heat_reductions)) then
-            i = 1 + modulo(self%in_use, size(self%heat_reductions))
-            call self%heat_reductions(i)%share_order(self%heat_reductions(self%in_use), self%bodies)
+      if (.not. self%heat_reductions(self%in_use)%serves(self%bodies, film)) then
+         if (model%steps(self%control%step)%is_transient) then
+            do i = 1, size(self%heat_reductions)
+               if (self%heat_reductions(i)%serves(self%bodies, film)) exit
+            end do
+            if (i > size(self%heat_reductions)) then
+               i = 1 + modulo(self%in_use, size(self%heat_reductions))
+               call self%heat_reductions(i)%share_order(self%heat_reductions(self%in_use), &
+                  self%bodies)
+            end if
+            self%in_use = i
          end if
-         self%in_use = i
+         call self%heat_reductions(self%in_use)%reduce(model, self%bodies, film, error)
       end if
-      call self%heat_reductions(self%in_use)%reduce(model, self%bodies, film, error)
       if (.not. allocated(error)) call measure_factors(self%bodies, self%heat_reductions, &
          self%sizes)
    end subroutine reduce_heat
