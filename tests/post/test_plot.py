@@ -297,6 +297,16 @@ def test_courses_of_faces_that_wear_have_the_worn_volume(kept, result, tmp_path)
     np.testing.assert_array_equal(numbers(table(tmp_path, "case.courses.csv")["worn_slave"]), volume)
 
 
+def test_courses_of_one_increment_are_points_and_their_ranges(kept, tmp_path):
+    path = tmp_path / "case.vtkhdf"
+    write_result(path, loads=(900.0,))
+    (figure,) = kept("courses", path)
+    pressure = figure.axes[0]
+    assert {line.get_marker() for line in pressure.lines} == {"o"}
+    (ranges,) = pressure.collections
+    assert ranges.get_linewidth()[0] > 0
+
+
 def test_legends_of_courses_hide_no_curve_and_no_title(laid_out, result):
     with h5py.File(result, "r+") as file:
         for k, name in enumerate(("in", "friction", "out", "stored", "dilatation")):

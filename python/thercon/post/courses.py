@@ -127,7 +127,8 @@ class Picture:
             colour, line = LOOKS[ORDER.get(words.strip("|\N{MINUS SIGN}"), 0)]
             if values.ndim == 2:
                 style.band(axes, self.at, *ends(values), colour)
-            axes.plot(self.at, self.mean(values), color=colour, ls=line, label=words or None)
+            axes.plot(self.at, self.mean(values), color=colour, ls=line, label=words or None,
+                      marker="o" if len(self.at) == 1 else "", ms=2.4)
         if has_names(curves):
             axes.legend(**RIGHT_ABOVE, ncols=COLUMNS, handlelength=1.8, columnspacing=1.2)
         low, high = axes.get_ylim()

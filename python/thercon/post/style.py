@@ -167,12 +167,14 @@ def mark_judged(axes, abscissa, judged):
 
 
 def band(axes, at, low, high, colour):
-    """Fill between low and high over an abscissa that may turn: each way has a band of its own."""
+    """Fill between low and high over an abscissa that may turn: each way has a band of its own, and
+    a single place a line."""
+    line = 3 if len(at) == 1 else 0
     ways = np.sign(np.diff(at))
     turns = [0, *np.flatnonzero(np.diff(ways)) + 1, len(at) - 1]
     for first, last in zip(turns, turns[1:]):
         part = slice(first, last + 1)
-        axes.fill_between(at[part], low[part], high[part], color=colour, alpha=0.15, linewidth=0)
+        axes.fill_between(at[part], low[part], high[part], color=colour, alpha=0.15, linewidth=line)
 
 
 def has_band(values):
