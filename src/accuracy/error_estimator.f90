@@ -353,14 +353,19 @@ contains
       type(error_estimator_type), intent(in) :: self
       type(increment_record_type), intent(inout) :: record
       real(dp), dimension(size(history_estimated)) :: finer, values
+      real(dp) :: beside(2)                      ! an instant is known to a part of its increment
       integer :: q
+
+      beside = nothing
+      ! Results of earlier versions do not have the increment.
+      if (allocated(record%solid_time)) beside(2) = sum(record%solid_time(2:))
 
       values = [(history_value(history_estimated(q)%name, record), q=1, size(values))]
       finer = ieee_value(1.0_dp, ieee_quiet_nan)
       if (.not. allocated(self%lost)) finer = [(history_value(history_estimated(q)%name, &
          self%divided%record), q=1, size(finer))]
       record%history_uncertainties = [(judged(self, history_estimated(q), values(q), &
-         finer(q) - values(q), spread(.false., 1, reason_count), nothing), q=1, size(values))]
+         finer(q) - values(q), spread(.false., 1, reason_count), beside), q=1, size(values))]
    end subroutine judge_history
 
    !> A value without an uncertainty, and why.
@@ -382,7 +387,7 @@ contains
       real(dp), intent(in) :: value
       real(dp), intent(in) :: change                  ! on the finer mesh, or NaN
       logical, intent(in) :: holds(reason_count)      ! what is known of the value
-      real(dp), intent(in) :: beside(2)               ! scatter and spacing
+      real(dp), intent(in) :: beside(2)               ! scatter; spacing or increment
       type(uncertainty_type) :: own
       logical :: all_holds(reason_count)
       real(dp) :: parts(3)

@@ -5,11 +5,13 @@
 !> 2^p/(2^p - 1) times the change between both, of which a safety factor makes the uncertainty
 !> (P. J. Roache, J. Fluids Eng. 116 (1994) 405-413; ASME V&V 20-2009): F = 3/(2^p - 1). As the edge
 !> of contact passes nodes, errors change their sign, and a change may be small by chance: so the
-!> scatter over increments is added, and of an edge a part of the spacing about it.
+!> scatter over increments is added, and of an edge a part of the spacing about it, of an instant a
+!> part of its increment.
 !>
 !> Powers (`order`) and parts of the spacing (`resolution`) are in the tables of quantities:
 !>
 !>   0.8 and 0     numbers: fields with edges have 1; F = 4 in place of 3 holds shear forces, too
+!>   0.8 and 0.2   when the last point is solid, known between two ends of increments
 !>   0.5 and 0     displacements of nodes: where bodies yield or creep, errors by mesh and by
 !>                 increments may have opposite signs, of which halving both shows the difference
 !>   0.9 and 0     maxima of bodies, whose change is that of the field round them
@@ -33,7 +35,7 @@ contains
       type(quantity_type), intent(in) :: quantity
       real(dp), intent(in) :: change      !! by the finer mesh, and by shorter increments
       real(dp), intent(in) :: scatter     !! over increments, 0 where it is not known
-      real(dp), intent(in) :: spacing     !! of nodes or contact points about an edge [length]
+      real(dp), intent(in) :: spacing     !! about an edge [length], or increment [time]
       real(dp), intent(in) :: iteration   !! what the fixed point has left
       real(dp) :: parts(3)                !! not negative; NaN where the change is
 

@@ -41,7 +41,8 @@ module solution_state
       !> (2 nodes) what the stiffness has beyond the bodies, initial stresses included; unallocated
       !> for none [force]
       real(dp), allocatable :: forces_beyond(:)
-      !> (1) when the last point became solid; unallocated while one is not [time]
+      !> (2) when the last point became solid, and the length of the increment in which it did;
+      !> unallocated while one is not [time]
       real(dp), allocatable :: solid_time(:)
       real(dp), allocatable :: history(:)           !! what all integration points remember, or none
       real(dp), allocatable :: work(:)   !! (2) of friction and of loads beside these [energy]

@@ -72,7 +72,8 @@ module quantity_types
       !> Power of the spacing with which errors of the mesh are taken to fall (uncertainty_rule)
       real(dp) :: order = 0.8_dp
       !> Of an edge of a zone: how far it is known on a mesh, in spacings about it, of the contact
-      !> points for contact, of the nodes for stick (uncertainty_rule); 0 for what is no edge.
+      !> points for contact, of the nodes for stick; of an instant, in its increment
+      !> (uncertainty_rule); 0 for others.
       real(dp) :: resolution = 0.0_dp
       logical :: follows_path = .false.        !! with friction its errors build up along the path
       ! In the result file, as attributes of its dataset.

@@ -132,7 +132,7 @@ contains
       if (allocated(summary%displacement)) call put_plain('largest_displacement', &
          summary%displacement, 'length')
       if (allocated(summary%last%solid_time)) call put_plain('solid_time', &
-         summary%last%solid_time, 'time')
+         summary%last%solid_time(1), 'time')
       call document%close('}')
    contains
       subroutine put_plain(name, value, unit)

@@ -217,7 +217,7 @@ contains
          'heat_friction'), unit_label('power', model%units), trim(merge('in all', '      ', &
          size(interfaces) > 1))))
       if (allocated(self%last%solid_time)) call append(lines, summary_line('all solid at', &
-         self%last%solid_time, history_words(self, model, 'solid_time'), or_blank( &
+         self%last%solid_time(1), history_words(self, model, 'solid_time'), or_blank( &
          model%units%time), ''))
       if (allocated(self%cycle)) call append(lines, self%cycle)
       if (allocated(self%many_increments)) call append(lines, self%many_increments)

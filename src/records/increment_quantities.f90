@@ -43,6 +43,7 @@ module increment_quantities
       label='heat of friction', is_estimated=.true., &
       description='heat that friction makes'), &
       quantity_type('solid_time', of_history, 'time', needs_melting, is_estimated=.true., &
+      resolution=0.2_dp, &
       description='time at which the last point that melts became solid; NaN before'), &
       quantity_type('heat_imbalance', of_history, '-', needs_heat, label='heat imbalance', &
       description='imbalance of the heat balance that the scheme solves, over the largest rate'), &
@@ -170,7 +171,7 @@ contains
       case ('heat_friction')
          value = record%heat_friction
       case ('solid_time')
-         if (allocated(record%solid_time)) value = record%solid_time
+         if (allocated(record%solid_time)) value = record%solid_time(1)
       case ('heat_imbalance')
          value = record%heat_imbalance
       case ('heat_imbalance_pointwise')

@@ -66,7 +66,7 @@ contains
          record%fields%temperature = next%temperature
          if (any(melts(model%materials))) record%fields%solid_fraction = solid_fractions(model, &
             next%temperature)
-         if (allocated(next%solid_time)) record%solid_time = next%solid_time(1)
+         if (allocated(next%solid_time)) record%solid_time = next%solid_time
          if (solves_mechanics(step%analysis)) then
             call balance_forces(bodies, model, loads, next, record)
          else

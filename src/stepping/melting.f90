@@ -325,7 +325,7 @@ contains
       type(model_type), intent(in) :: model
       real(dp), intent(in) :: temperatures(:, :)             !! (nodes, 2) at both ends
       real(dp), intent(in) :: instants(2)                    !! of these [time]
-      real(dp), allocatable, intent(inout) :: solid_time(:)  !! (1) or none [time]
+      real(dp), allocatable, intent(inout) :: solid_time(:)  !! (2) as of the state [time]
       real(dp) :: contents(2), part
       integer :: i, k
 
@@ -346,7 +346,8 @@ contains
          end if
          if (contents(1) > 0.0_dp) part = max(part, contents(1)/(contents(1) - contents(2)))
       end do
-      if (part >= 0.0_dp) solid_time = [instants(1) + part*(instants(2) - instants(1))]
+      if (part >= 0.0_dp) solid_time = [instants(1) + part*(instants(2) - instants(1)), &
+         instants(2) - instants(1)]
    end subroutine find_solid_time
 
    !> Solid fractions on the nodes, 1 where nothing melts.

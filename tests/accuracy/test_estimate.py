@@ -26,16 +26,18 @@ says which have none. One rule makes all of them:
 long as well; 3/(2^p - 1) makes it the uncertainty of an error of order p, with a safety factor (P.
 J. Roache, J. Fluids Eng. 116 (1994) 405-413; ASME V&V 20-2009). *Scatter* is how much the number
 varies about a smooth history, because errors change their sign as the edge of contact passes nodes.
-*Spacing* is that of the points about an edge, *iteration* what the fixed point has left. p is 0.8
-for forces, heat rates and peak pressures, 0.9 for the largest stress and temperature, 0.5 for
-displacements, 1.5 for edges; r is 0.08 for the edge of contact and 0.6 for that of stick.
+*Spacing* is that of the points about an edge, of `solid_time` the increment, *iteration* what the
+fixed point has left. p is 0.8 for forces, heat rates, peak pressures and times, 0.9 for the largest
+stress and temperature, 0.5 for displacements, 1.5 for edges; r is 0.08 for the edge of contact, 0.6
+for that of stick, 0.2 for `solid_time`.
 
 `ERRORS=LAST`, the default, solves the last increment of each step once more, with elements divided
 at closed faces and where 95 % of the squared recovered errors are. It does not see what builds up
 along the path. `ERRORS=FULL` solves the whole deck again with all elements and increments halved.
 
 The constants were chosen on 160 decks (`tests/accuracy/drawn_decks.py`), of which 95 to 100 % hold
-for each quantity, and are judged on others in the next sections.
+for each quantity, and are judged on others in the next sections. That of `solid_time` was chosen on
+160 of Stefan's fronts, of which 97 % hold, as do 98 % of 160 others.
 """
 DETAILS = """
 *Change* is what the number changes by on a finer mesh, with `ERRORS=FULL` in increments half as long as well.

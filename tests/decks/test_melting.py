@@ -1,5 +1,6 @@
 """Latent heat and annealing of small decks; the verification manual has fronts."""
 
+import json
 import re
 
 import numpy as np
@@ -223,15 +224,31 @@ def test_a_casting_goes_on_from_every_increment_with_the_same_digits(tmp_path):
         assert_alike(datasets(whole, *FILES), datasets(folder / whole.name, *FILES), 0.0)
 
 
-def test_a_time_of_solidification_has_an_uncertainty_that_holds(tmp_path):
-    """Stefan's front, Ste = 1, over 1; an interval of 0.01 delays it by some 0.3 %."""
-    points = [float(x) for x in np.linspace(0.0, 1.0, 17)]
+def front(elements, interval, *times):
+    """Return a slab that Stefan's front passes, Ste = 1, and when that is at its end."""
+    points = [float(x) for x in np.linspace(0.0, 1.0, elements + 1)]
     given = material("BODY", conductivity=1.0, density=1.0, specific_heat=1.0, elastic=None)
-    cards = [*mesh("BODY", points, [0.0, 1 / 16], "CPS4"), *given[:-1], "*LATENT HEAT",
-             "1., 0.99, 1.", given[-1], "*OPTIONS, ERRORS=FULL", *start(1.0),
-             *step("*BOUNDARY", "BODY.LEFT, 11, 11, 0.", times="0.005, 0.7")]
     exact = 1.0 / (2 * 0.6200626) ** 2
+    return [*mesh("BODY", points, [0.0, 1 / elements], "CPS4"), *given[:-1], "*LATENT HEAT",
+            f"1., {1 - interval!r}, 1.", given[-1], "*OPTIONS, ERRORS=FULL", *start(1.0),
+            *step("*BOUNDARY", "BODY.LEFT, 11, 11, 0.",
+                  times=", ".join(repr(time * exact) for time in times))], exact
+
+
+def test_a_time_of_solidification_has_an_uncertainty(tmp_path):
+    """An interval of 0.01 delays the front by some 0.3 %."""
+    cards, exact = front(16, 0.01, 0.0075, 1.05)
     judge(tmp_path, cards, [("solid_time", "", "LAST", exact, 0.01)])
     listing = next(tmp_path.glob("*.lst")).read_text()
     assert re.search(r"solid_time +\S+ +\S+", listing.split("UNCERTAINT")[-1])
     assert "no estimate: path" not in listing
+
+
+@pytest.mark.parametrize(("elements", "increments"), [(16, 40), (32, 40), (32, 60)])
+def test_the_uncertainty_of_a_time_of_solidification_holds(tmp_path, elements, increments):
+    """A front passes one node after the other, so that its change on a finer mesh may be small by
+    chance; but not beside the increment."""
+    cards, exact = front(elements, 2e-4, 1.3 / increments, 1.3)
+    process = run("run", "--json", write(tmp_path / "front.inp", cards), "--out", tmp_path)
+    found = json.loads(process.stdout)["summary"]["fields"]["solid_time"]
+    assert abs(found["value"] - exact) <= found["uncertainty"]
