@@ -158,25 +158,25 @@ contains
       type(model_type), intent(in) :: model
       type(sparse_matrix_type) :: graph         ! (nodes, nodes)
       type(triplet_list_type) :: list
-      integer :: e, i
+      integer :: bars, e, i
       real(dp) :: ones(nodes_per_element, nodes_per_element)
 
       ones = 1.0_dp
+      bars = 0
+      if (allocated(model%bars)) bars = size(model%bars)
       associate (mesh => model%mesh)
-         call list%reserve(nodes_per_element**2*size(mesh%element_kind))
+         call list%reserve(nodes_per_element**2*(size(mesh%element_kind) + bars))
          do e = 1, size(mesh%element_kind)
             associate (n => element_node_count(mesh%element_kind(e)))
                call list%add_block(mesh%element_nodes(:n, e), mesh%element_nodes(:n, e), &
                   ones(:n, :n))
             end associate
          end do
-         if (allocated(model%bars)) then
-            do i = 1, size(model%bars)
-               associate (nodes => (model%bars(i)%elongation%places() - 1)/2 + 1)
-                  call list%add_block(nodes, nodes, ones(:size(nodes), :size(nodes)))
-               end associate
-            end do
-         end if
+         do i = 1, bars
+            associate (nodes => (model%bars(i)%elongation%places() - 1)/2 + 1)
+               call list%add_block(nodes, nodes, ones(:size(nodes), :size(nodes)))
+            end associate
+         end do
          graph = list%compress(size(mesh%node_number), size(mesh%node_number))
       end associate
    end function joined_nodes

@@ -179,10 +179,13 @@ contains
       type(law_points_type), intent(inout) :: points         ! the response
       real(dp), intent(inout) :: numbers(:, :)               ! its history
       type(law_points_type) :: stiffer
-      real(dp) :: change(4, 4), part, slope, strains(4, 4)
+      real(dp) :: change(4, 4), part, slope, strained, strains(4, 4)
       integer :: g, pass, search
 
       strains = 0.0_dp
+      ! Where an element is held, heat and initial stress strain it.
+      strained = maxval(abs(elastic%strain(:4, :))) + maxval(abs(elastic%stress(:4, :)))/ &
+         maxval(abs(elastic%tangent(:, :, :4)))
       do pass = 1, most_enhancements
          if (points%failed) return
          ! A part of the elasticity keeps modes regular; Newton's changes alone go to and fro where
@@ -194,8 +197,7 @@ contains
                part*points%stiffness(g)*elastic%tangent(:, :, g)
          end do
          change = self%changes_of_modes(mesh, element, stiffer)
-         if (maxval(abs(change)) <= settled*(maxval(abs(strains)) + &
-            maxval(abs(elastic%strain(:4, :))))) return
+         if (maxval(abs(change)) <= settled*(maxval(abs(strains)) + strained)) return
          slope = work_on(change)
          part = 1.0_dp
          do search = 1, most_searches

@@ -80,8 +80,8 @@ contains
          if (run%corrections%corrects) stage%content = stage%content + weight* &
             (run%corrections%true_contents(model, middle%temperature) - stage%content)
       end if
-      if (allocated(run%bodies%points%heated)) stage%slip_before = slips_before(run%bodies, &
-         middle%contact)
+      if (allocated(run%bodies%points%heated) .and. stage%strains) stage%slip_before = &
+         slips_before(run%bodies, middle%contact)
       stage%size = stage%of_increment%step_time - stage%clock%step_time
       stage%clock = stage%of_increment
       stage%is_last = .true.

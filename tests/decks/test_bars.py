@@ -93,17 +93,19 @@ def test_a_warm_truss_pushes(tmp_path, anchor_at, beside, young):
             (stiffness * free - 100.0 * longer) / (stiffness + 100.0 + beside), EXACT), BALANCED])
 
 
-def test_a_spring_holds_a_body_that_contact_stops(tmp_path):
+@pytest.mark.parametrize("sliding", ["", ", SLIDING=FINITE"])
+def test_a_spring_holds_a_body_that_contact_stops(tmp_path, sliding):
     """A block of one element is pushed by 5 over a gap of 0.01 against a spring of 100."""
     gap, push, spring = 0.01, 5.0, 100.0
     give = 2.0 / STIFFNESS
-    base = [*mesh("BASE", [0.0, 2.0], [-1.0, 0.0], kind="CPS8", first=201),
+    base = [*mesh("BASE", [0.0, 2.0], [-1.0 - gap, -gap], kind="CPS8", first=201),
             *material("BASE", (1000.0, 0.0), 1e-4), "0.5"]
-    joint = ["*SURFACE INTERACTION, NAME=DRY", "*CONTACT PAIR, INTERACTION=DRY, NAME=JOINT",
-             "BODY.BOTTOM, BASE.TOP", f"*CLEARANCE, SLAVE=BODY.BOTTOM, MASTER=BASE.TOP, VALUE={gap}"]
-    judge(tmp_path, [*BLOCK, *base, *HANDLE, *joint, *springs("SPRING1", "100", "2", str(spring)),
+    joint = ["*SURFACE INTERACTION, NAME=DRY",
+             f"*CONTACT PAIR, INTERACTION=DRY, NAME=JOINT{sliding}", "BODY.BOTTOM, BASE.TOP"]
+    judge(tmp_path, [*BLOCK, *base, *HANDLE, *anchor(1.0, 4.0), *joint,
+                     *springs("SPRINGA", "100, 101", str(spring)),
                      "*STEP", "*STATIC", "1., 1.", "*BOUNDARY", "BASE.BOTTOM, 1, 2", "BODY.LEFT, 1",
-                     "HANDLE, 1", "*CLOAD", f"100, 2, {-push}", "*END STEP"],
+                     "HANDLE, 1", "ANCHOR, 1, 2", "*CLOAD", f"100, 2, {-push}", "*END STEP"],
           [("normal_force", "JOINT", "LAST", (push - spring * gap) / (1.0 + spring * give), EXACT),
            BALANCED])
 

@@ -173,6 +173,19 @@ def test_modes_that_flow_freely_end_no_run(kind, tmp_path):
     assert equivalent.max() == pytest.approx(30.0, rel=1e-5)
 
 
+def test_a_held_element_with_enhanced_modes_carries_the_stress_of_its_heat(tmp_path):
+    # No strain but that of heat, 2e-4, from all sides; its corners are not those of a rectangle.
+    cards = [*mesh("BODY", [0.0, 5.0], [0.0, 1.3], "CPE4I"),
+             *law("*PLASTIC", "1000.", expansion=1e-5), "*INITIAL CONDITIONS, TYPE=TEMPERATURE",
+             "BODY, 0.", *step("*STATIC", "1., 1.", "*BOUNDARY", "BODY, 1, 2", "*TEMPERATURE",
+                               "BODY, 20.")]
+    skew = [card.replace("5, 1.3", "5.1, 1.25") for card in cards]
+    assert skew != cards
+    exact = -YOUNG * 20.0 * 1e-5 / (1 - 2 * POISSON)
+    judge(tmp_path, skew, [("S11", "BODY", "LAST", exact, 1e-9),
+                           ("S12", "BODY", "LAST", 0.0, 1e-9, "ABS")])
+
+
 def test_strains_beyond_their_limit_are_told_by_the_limit(tmp_path):
     # Strains of 0.05 in the one increment that yields, which must not be shorter.
     cards = [*bar("*PLASTIC", "200., 0.", "220., 0.2"), *pulled(205.0, "*STATIC", "0.1, 1., 0.1")]
