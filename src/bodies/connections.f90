@@ -85,6 +85,8 @@ module connections
       !> slides by any distance stays where it was
       real(dp), allocatable :: worn_part(:)
       real(dp), allocatable :: wear_count                 !! how often slip counts
+      !> (m) speed out of the plane; unallocated where no faces have one [length/time]
+      real(dp), allocatable :: speed(:)
       !> (n) heat of friction of points%heated, and the friction that makes it where they slide out
       !> of the plane: in the plane these have none
       type(friction_heat_type), allocatable :: heat(:)
@@ -346,6 +348,7 @@ contains
       heat = model%interactions(model%contacts(points%interface)%interaction)%heat
       where (heat%angular_velocity > 0.0_dp) &
          heat%speed = heat%angular_velocity*abs(model%mesh%coordinates(1, points%slave))
+      laws%speed = max(heat%speed, 0.0_dp)
       if (allocated(points%heated)) then
          laws%heat = heat(points%heated)
          laws%heating_friction = laws%nodal_friction(points%heated)

@@ -29,11 +29,7 @@ contains
          slip = contact%tangential - contact%slip_origin
          where (start%contact_state /= contact_open) slip = slip - (start%tangential - &
             start%slip_origin)
-         if (allocated(bodies%laws%heat)) then
-            associate (heated => bodies%points%heated, speed => max(bodies%laws%heat%speed, 0.0_dp))
-               slip(heated) = hypot(slip(heated), speed*duration)
-            end associate
-         end if
+         if (allocated(bodies%laws%speed)) slip = hypot(slip, bodies%laws%speed*duration)
          temperature = 0.0_dp
          of_master = 0.0_dp
          do i = 1, size(bodies%interfaces)

@@ -95,7 +95,7 @@ contains
          if (.not. is_judged(model%verifications(i), record, model)) cycle
          if (allocated(model%verifications(i)%level)) then
             call self%levels(i)%times(values, uncertainty, reason)
-            no_estimate = merge(reason_inside_step(model), no_reason, ieee_is_nan(uncertainty))
+            if (.not. ieee_is_nan(uncertainty)) no_estimate = no_reason
             if (ieee_is_nan(uncertainty) .and. no_estimate == no_reason) no_estimate = of_points
          else
             call values_asked_for(model%verifications(i), record, model, interfaces, point_node, &

@@ -193,10 +193,11 @@ contains
             call complete_record(bodies, model, run%recovery, run%loads, attempt%data, next, record)
             run%seconds%recover = run%seconds%recover + (wall_seconds() - since)
             call warn_of_tables(model, bodies%points, record)
-            if (allocated(bodies%faces_at) .and. allocated(attempt%data%friction%heat)) call &
-               compare_with_drive(bodies, attempt%data%friction%entering(), reshape( &
-               next%displacement - run%state%displacement, shape(record%fields%displacement))/ &
-               (clock%step_time - run%control%step_time), record)
+            if (attempt%stage%strains .and. allocated(bodies%faces_at) .and. &
+               allocated(attempt%data%friction%heat)) call compare_with_drive(bodies, &
+               attempt%data%friction%entering(), reshape(next%displacement - &
+               run%state%displacement, shape(record%fields%displacement))/(clock%step_time - &
+               run%control%step_time), record)
             call check_record(record, step%analysis, error)
             if (allocated(error)) return
          end if

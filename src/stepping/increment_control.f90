@@ -37,6 +37,7 @@ module increment_control
       real(dp) :: step_time = 0.0_dp          !! time since then [time]
       real(dp) :: largest = 0.0_dp            !! largest size of the next increment [time]
       real(dp) :: useful = 0.0_dp             !! size below which none is shortened [time]
+      integer :: warned_of = 0                !! last step whose smallest increment erred
       real(dp) :: spacing = 0.0_dp            !! of instants of the step that differ [time]
       !> Of a longer attempt at this increment that erred too much: its size [time], error, and
       !> largest change of a temperature; 0 without one
@@ -59,6 +60,7 @@ module increment_control
       procedure :: cut_back
       procedure :: why_not_again
       procedure :: explain_many
+      procedure :: warn_of_smallest
    end type increment_control_type
 
 contains
@@ -235,23 +237,49 @@ contains
       character(:), allocatable :: words                     !! part of a sentence
 
       associate (step => model%steps(self%step))
-         words = 'its temperatures err by '//percent(record%local_error)//' of their range'
-         if (record%strain_error > allowance*step%local_error) then
-            words = 'its inelastic strains err by '//percent(record%strain_error)// &
-               ' of the elastic ones'
-         else if (record%creep_difference/step%creep_tolerance > allowance) then
-            words = 'its creep strains differ by '//to_text(record%creep_difference)// &
-               ', more than CETOL='//to_text(step%creep_tolerance)
-         else if (record%local_error <= allowance*step%local_error) then
-            words = 'a temperature changes by '//to_text(record%largest_change)// &
-               ', more than DELTMX='//to_text(step%largest_change)
-         end if
+         words = words_of_excess(step, record)
          call halve(self, step, increment_size*sqrt(aim/excess(step, record)), &
             self%useful_size(step, record))
       end associate
       self%longer = [increment_size, record%local_error, record%largest_change]
       self%cut_backs = self%cut_backs + 1
    end function shorten
+
+   !> What an increment errs or changes by, more than its step allows.
+   function words_of_excess(step, record) result(words)
+      type(step_type), intent(in) :: step
+      type(increment_record_type), intent(in) :: record
+      character(:), allocatable :: words                     ! part of a sentence
+
+      words = 'its temperatures err by '//percent(record%local_error)//' of their range'
+      if (record%strain_error > allowance*step%local_error) then
+         words = 'its inelastic strains err by '//percent(record%strain_error)// &
+            ' of the elastic ones'
+      else if (record%creep_difference/step%creep_tolerance > allowance) then
+         words = 'its creep strains differ by '//to_text(record%creep_difference)// &
+            ', more than CETOL='//to_text(step%creep_tolerance)
+      else if (record%local_error <= allowance*step%local_error) then
+         words = 'a temperature changes by '//to_text(record%largest_change)// &
+            ', more than DELTMX='//to_text(step%largest_change)
+      end if
+   end function words_of_excess
+
+   !> Warns of the first increment of a step that is kept as the smallest, whatever it errs.
+   subroutine warn_of_smallest(self, model, increment_size, record)
+      class(increment_control_type), intent(inout) :: self   !! before it accepts the increment
+      type(model_type), intent(in) :: model
+      real(dp), intent(in) :: increment_size                 !! of it [time]
+      type(increment_record_type), intent(inout) :: record   !! of it
+
+      associate (step => model%steps(self%step))
+         if (self%warned_of == self%step .or. .not. adapts_increments(step)) return
+         if (excess(step, record) <= allowance .or. self%can_cut_back(model, increment_size)) return
+         self%warned_of = self%step
+         call record%warn('the increment is the smallest of its step and is kept, though '// &
+            words_of_excess(step, record)//'; give a smallest increment, the third value of '// &
+            'the step''s times, below '//to_text(step%smallest_increment))
+      end associate
+   end subroutine warn_of_smallest
 
    !> Halves the size until it is at most the one wanted, but makes it no smaller than the smallest,
    !> nor than what is useful.

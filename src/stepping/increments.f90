@@ -88,6 +88,7 @@ contains
       if (is_nth(model%steps(record%step)%stability_frequency, record)) run%solved = &
          attempt%workspace%of_motions()
       if (record%last_of_step) call run%control%explain_many(model, clock, record)
+      call run%control%warn_of_smallest(model, increment_size, record)
       call run%control%accept(model, clock, record)
       call close_cycle(run, model, record)
       if (allocated(run%is_beyond)) call note_ends(run, model, record)

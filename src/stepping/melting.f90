@@ -13,8 +13,8 @@
 module melting
    use element_kinds, only: element_node_count
    use kinds, only: dp
-   use materials, only: heat_capacity, latent_content, material_type, melted_to, melting_row, melts, &
-      solid_fraction
+   use materials, only: heat_capacity, heat_content, latent_content, material_type, melted_to, &
+      melting_row, melts, solid_fraction
    use mesh, only: nodes_per_element
    use model, only: model_type
    use sparse_matrix, only: sparse_matrix_type
@@ -29,7 +29,7 @@ module melting
 
    integer, parameter :: most_sweeps = 24        !! that foresee a front
    integer, parameter :: most_elements = 2       !! that a front passes in a stage as foreseen
-   real(dp), parameter :: faster = 2.0_dp        !! than foreseen changes are those that find a front
+   real(dp), parameter :: faster = 2.0_dp        !! than foreseen, a change that finds a front
    integer, parameter :: quiet_sweeps = 4        !! in which no node enters or leaves an interval
    real(dp), parameter :: resting = 1.0e-4_dp    !! part of a node's latent heat that moves none
 
@@ -335,8 +335,8 @@ contains
             associate (material => model%materials(node%material))
                do k = 1, 2
                   contents(k) = latent_content(material, temperatures(node%node, k)) + &
-                     heat_capacity(material)*(temperatures(node%node, k) - &
-                     material%melting(1)%solidus)
+                     heat_content(material, temperatures(node%node, k)) - &
+                     heat_content(material, material%melting(1)%solidus)
                end do
             end associate
          end associate

@@ -193,17 +193,19 @@ contains
       type(deck_type), intent(inout) :: deck
       type(place_type) :: place
       character(:), allocatable :: fault
-      integer :: n
+      integer :: i, n
 
       n = findloc(deck%model%steps%dilates, .true., dim=1)
       if (n == 0) return
       place = deck%analysis_place(n)
       fault = ''
-      associate (used => deck%model%materials(deck%model%sections%material))
-         if (any(follows_temperature(used, of_elasticity) .or. follows_temperature(used, &
-            of_expansion))) fault = 'needs *ELASTIC and *EXPANSION of one row: with tables '// &
-            'over temperature the heat of strains is another one'
-      end associate
+      do i = 1, size(deck%model%sections)
+         associate (used => deck%model%materials(deck%model%sections(i)%material))
+            if (follows_temperature(used, of_elasticity) .or. follows_temperature(used, &
+               of_expansion)) fault = 'needs *ELASTIC and *EXPANSION of one row: with tables '// &
+               'over temperature the heat of strains is another one'
+         end associate
+      end do
       if (any(has_law(deck%model%materials))) fault = 'is refused with *PLASTIC, *CREEP and '// &
          '*ANNEAL TEMPERATURE: the heat of strains is that of elastic ones'
       if (.not. deck%model%constants%has_absolute_zero) fault = 'needs absolute temperatures; '// &
