@@ -78,6 +78,8 @@ contains
       profile%pressure = pressure
       profile%shear = shear
       profile%gap = gap
+      ! Gaps are read up to the end of the master.
+      if (allocated(points%is_beyond)) profile%gap = merge(0.0_dp, gap, points%is_beyond)
       if (points%pairing == pairing_surfaces) profile%hat_spacings = points%node_spacings
       if (allocated(points%cuts)) profile%cuts = points%cuts
    end function contact_profile

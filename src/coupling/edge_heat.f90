@@ -82,15 +82,15 @@ contains
       type(contact_points_type) :: points
       logical :: is_beside(size(opening))
       logical, allocatable :: is_crossed(:)
-      integer :: found, i
+      integer :: faced, found, i
 
       do i = 1, size(bodies%interfaces)
          associate (first => bodies%points%interface_start(i), &
             last => bodies%points%interface_start(i + 1) - 1)
             is_beside(first:last) = .false.
-            if (.not. bodies%points%resolves_edge(i) .or. bodies%laws%removed(first)) cycle
+            if (.not. bodies%points%resolves_edge(i) .or. all(bodies%laws%removed(first:last))) cycle
             is_beside(first:last) = bodies%jump_index(first:last) > 0 .and. &
-               beside_edge(opening(first:last) > 0.0_dp)
+               beside_edge(opening(first:last) > 0.0_dp, bodies%laws%removed(first:last))
          end associate
       end do
       allocate (beside(count(is_beside)))
@@ -100,8 +100,9 @@ contains
             last => bodies%points%interface_start(i + 1) - 1)
             if (.not. any(is_beside(first:last))) cycle
             call bodies%view(i, points)
+            faced = first - 1 + findloc(bodies%laws%removed(first:last), .false., dim=1)
             call integrate_hats(bodies%points%mortar(i), edges_of(points, &
-               bodies%laws%conductance(first), opening(first:last), modulus(first:last), &
+               bodies%laws%conductance(faced), opening(first:last), modulus(first:last), &
                bodies%equilibrium%contact%nodal_stiffness(first:last), bodies%points%mortar(i)), &
                is_beside(first:last), &
                beside(found + 1:found + count(is_beside(first:last))))
@@ -117,16 +118,17 @@ contains
       hats = beside(pack([(i, i=1, size(beside))], is_crossed))
    end subroutine find_edge_integrals
 
-   !> Contact points with an edge in the side before or behind them, or beside a cut.
-   pure function beside_edge(is_open) result(beside)
-      logical, intent(in) :: is_open(:)
-      logical :: beside(size(is_open))
-      integer :: m
+   !> Contact points with an edge in the side before or behind them, or beside a cut. Sides that
+   !> reach beyond the master have none.
+   pure function beside_edge(is_open, is_beyond) result(beside)
+      logical, intent(in) :: is_open(:), is_beyond(:)
+      logical :: beside(size(is_open)), has_edge(size(is_open) - 1)
 
-      m = size(is_open)
-      beside = .false.
-      beside(:m - 1) = is_open(:m - 1) .neqv. is_open(2:)
-      beside(2:) = beside(2:) .or. (is_open(:m - 1) .neqv. is_open(2:))
+      associate (m => size(is_open))
+         has_edge = (is_open(:m - 1) .neqv. is_open(2:)) .and. .not. (is_beyond(:m - 1) .or. &
+            is_beyond(2:))
+      end associate
+      beside = [.false., has_edge] .or. [has_edge, .false.]
    end function beside_edge
 
    !> The integrals of the hat functions of an interface beside an edge.
@@ -287,8 +289,11 @@ contains
       type(edges_type) :: edges
       type(contact_profile_type) :: piece, profile
       integer, allocatable :: ends(:)
+      logical :: is_beyond(size(opening))
       integer :: i, k
 
+      is_beyond = .false.
+      if (allocated(points%is_beyond)) is_beyond = points%is_beyond
       profile = contact_profile(points, merge(contact_open, contact_slip, opening > 0.0_dp), &
          max(-opening, 0.0_dp)*modulus, 0.0_dp*opening, merge(opening, opening*modulus* &
          points%weight/max(stiffness, tiny(1.0_dp)), opening > 0.0_dp))
@@ -298,8 +303,9 @@ contains
       do i = 1, size(ends), 2
          piece = some_of(profile, [(k, k=ends(i), ends(i + 1))])
          do k = ends(i), ends(i + 1) - 1
-            if (count(profile%contact_state(k:k + 1) == contact_open) == 1) edges%sides(k)%along = &
-               edge_between(law, piece, k + 1 - ends(i))
+            if (count(profile%contact_state(k:k + 1) == contact_open) == 1 .and. .not. &
+               any(is_beyond(k:k + 1))) edges%sides(k)%along = edge_between(law, piece, k + 1 - &
+               ends(i))
          end do
       end do
       do k = 1, size(opening)

@@ -456,3 +456,34 @@ def test_numerical_uncertainties_hold(tmp_path):
             assert np.isfinite(rows).all() and len(rows) == 5
             holds += list(abs(rows[:, 0] - true[at]) <= rows[:, 1])
     assert np.mean(holds) >= 0.95
+
+
+def tilted(way):
+    """Return a pad that slides off a rail, pressed on it at the end that stays."""
+    pad_cards = mesh("PAD", np.linspace(5.0, 15.0, 5), [5.0, 10.0], "CPS4", first=1001)
+    tops = sorted((-way * x, n) for n, (x, y) in nodes_of(pad_cards).items() if y == 10.0)
+    own = {"conductivity": 1.0}
+    return [*mesh("RAIL", np.linspace(0.0, 20.0, 9), [0.0, 5.0], "CPS4"), *pad_cards,
+            *material("RAIL", (1000.0, 0.3), **own), *material("PAD", (1000.0, 0.3), **own),
+            "*INITIAL CONDITIONS, TYPE=TEMPERATURE", "RAIL, 0.", "PAD, 0.",
+            "*SURFACE INTERACTION, NAME=FACES", "*GAP CONDUCTANCE, CLEARANCE", "0.1, 0.", "0., 0.5",
+            f"*CONTACT PAIR, INTERACTION=FACES, NAME=FACE{FINITE}, PAIRING=SURFACES",
+            "PAD.BOTTOM, RAIL.TOP", "*STEP, INC=1000",
+            "*COUPLED TEMPERATURE-DISPLACEMENT, STEADY STATE", "0.1, 1.", "*BOUNDARY",
+            "RAIL.BOTTOM, 1, 2", "RAIL.BOTTOM, 11, 11, 0.", "PAD.TOP, 11, 11, 100.",
+            f"PAD.TOP, 1, 1, {way!r}",
+            *(f"{n}, 2, 2, {0.25 - 0.075 * k!r}" for k, (_, n) in enumerate(tops)), "*END STEP"]
+
+
+def test_points_beyond_the_master_tell_no_edge(tmp_path):
+    """To the left is to the right in a mirror: the last pairs have no master, whichever they are."""
+    found = []
+    for way in (7.5, -7.5):
+        with h5py.File(solve(write(tmp_path / f"{way}.inp",
+                                   without_unused_surfaces(tilted(way))))) as file:
+            face = file["contact/FACE"]
+            edge = face["edges_contact"][-1][0]
+            found.append((face["heat_rate"][-1], edge if way > 0.0 else 10.0 - edge))
+            gap = face["gap"][-1][1 if way > 0.0 else -2]
+    assert found[0] == pytest.approx(found[1], rel=1e-9)
+    assert 0.0 < found[0][1] < 1.25 and gap > 0.0, "nearer to the pair that is closed"
