@@ -88,7 +88,8 @@ contains
          associate (first => bodies%points%interface_start(i), &
             last => bodies%points%interface_start(i + 1) - 1)
             is_beside(first:last) = .false.
-            if (.not. bodies%points%resolves_edge(i) .or. all(bodies%laws%removed(first:last))) cycle
+            if (.not. bodies%points%resolves_edge(i)) cycle
+            if (all(bodies%laws%removed(first:last))) cycle
             is_beside(first:last) = bodies%jump_index(first:last) > 0 .and. &
                beside_edge(opening(first:last) > 0.0_dp, bodies%laws%removed(first:last))
          end associate

@@ -13,7 +13,7 @@ module steps
       load_film_sink, load_temperature, acts_on_nodes, loaded_side, analysis_static, &
       analysis_coupled, analysis_heat, dof_temperature, solves_heat, solves_mechanics, &
       adapts_increments, cycle_type, until_strain, until_displacement, until_force, &
-      least_increment, smallest_of_first, smallest_part, increment_growth, planned_increments
+      least_increment, smallest_part, increment_growth, planned_increments
 
    integer, parameter :: analysis_static = 1    !! *STATIC: mechanics at given temperatures
    integer, parameter :: analysis_coupled = 2   !! *COUPLED TEMPERATURE-DISPLACEMENT, STEADY STATE
@@ -43,9 +43,9 @@ module steps
 
    !> Least increment as a part of the period; shorter ones are lost in the rounding of the times.
    real(dp), parameter :: least_increment = 1.0e-9_dp
-   !> Smallest increment that steps have by default, as part of their period, and, where it follows
-   !> what increments err, of the first
-   real(dp), parameter :: smallest_part = 1.0e-5_dp, smallest_of_first = 1.0e-3_dp
+   !> Smallest increment that steps have by default, as part of their period; of *VISCO of the first
+   !> one, in which stress may relax
+   real(dp), parameter :: smallest_part = 1.0e-5_dp
 
    real(dp), parameter :: increment_growth = 1.5_dp   !! of increments that grow, as in CalculiX
    real(dp), parameter :: remainder = 1.0e-6_dp       !! of an increment: belongs to the one before

@@ -264,7 +264,8 @@ contains
       end if
    end function words_of_excess
 
-   !> Warns of the first increment of a step that is kept as the smallest, whatever it errs.
+   !> Warns of the first increment of a step that is kept as the smallest, whatever its strains err:
+   !> they stay, where temperatures forget.
    subroutine warn_of_smallest(self, model, increment_size, record)
       class(increment_control_type), intent(inout) :: self   !! before it accepts the increment
       type(model_type), intent(in) :: model
@@ -273,7 +274,8 @@ contains
 
       associate (step => model%steps(self%step))
          if (self%warned_of == self%step .or. .not. adapts_increments(step)) return
-         if (excess(step, record) <= allowance .or. self%can_cut_back(model, increment_size)) return
+         if (max(record%strain_error/step%local_error, record%creep_difference/ &
+            step%creep_tolerance) <= allowance .or. self%can_cut_back(model, increment_size)) return
          self%warned_of = self%step
          call record%warn('the increment is the smallest of its step and is kept, though '// &
             words_of_excess(step, record)//'; give a smallest increment, the third value of '// &

@@ -254,6 +254,21 @@ def test_relaxation_is_as_accurate_as_asked_for(tmp_path):
     assert errors[1] < 0.1 * errors[0]
 
 
+def test_a_stress_that_relaxes_keeps_its_sign(tmp_path):
+    """Creep of the first increment as it is given is sixty times the strain that is held."""
+    start = 1000.0
+    for times, holds in (("0.01, 1000.", True), ("0.01, 1000., 0.01", False)):
+        cards = [*bar("*CREEP", f"{A!r}, {N!r}"), *stretched(start / YOUNG, "*STATIC", "1., 1."),
+                 *stretched(start / YOUNG, "*VISCO", times)]
+        result = solve(write(tmp_path / "deck.inp", cards))
+        stress = datasets(result, *FILES)["VTKHDF/PointData/stress"].reshape(-1, 4)[-1, 0]
+        listing = result.with_suffix(".lst").read_text()
+        words = "the increment is the smallest of its step and is kept, though its inelastic"
+        assert (words in " ".join(listing.split())) is not holds
+        if holds:
+            assert stress == pytest.approx(left(1000.0, start), rel=1e-3)
+
+
 @pytest.mark.changes("VISCO, CETOL")
 def test_creep_tolerance_shortens_increments(tmp_path):
     few, many = increments(tmp_path, lambda allowed: relaxing(

@@ -224,6 +224,15 @@ def test_a_casting_goes_on_from_every_increment_with_the_same_digits(tmp_path):
         assert_alike(datasets(whole, *FILES), datasets(folder / whole.name, *FILES), 0.0)
 
 
+def test_the_last_point_is_solid_by_the_heat_of_a_table(tmp_path):
+    """Heat capacity 1 at 100, 4 from 500 on: 400 from 600 to 500, then 39.625 and 100 of melting."""
+    cards = melting(["50., 490., 500."])
+    place = cards.index("*SPECIFIC HEAT") + 1
+    cards[place:place + 1] = ["0.5, 100.", "2., 500."]
+    judge(tmp_path, [*cards, *start(600.0), *step("*DFLUX", "BODY, BF, -1.", times="200., 1000.")],
+          [("solid_time", "", "LAST", 539.625, 1e-8)])
+
+
 def front(elements, interval, *times):
     """Return a slab that Stefan's front passes, Ste = 1, and when that is at its end."""
     points = [float(x) for x in np.linspace(0.0, 1.0, elements + 1)]

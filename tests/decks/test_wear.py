@@ -63,6 +63,16 @@ def test_a_block_under_a_constant_force_wears_by_k_p_v_t(tmp_path):
     assert found["worn_volume_slave"][-1] == pytest.approx(K * PRESSURE * SPEED, rel=1e-9)
 
 
+@pytest.mark.parametrize("heat", [0.0, 1.0])
+def test_faces_that_slide_out_of_the_plane_wear_with_heat_of_friction_and_without(tmp_path, heat):
+    cards = bar(force=PRESSURE, friction=0.1, speed=0.0)
+    place = cards.index("*FRICTION")
+    cards[place:place] = ["*GAP HEAT GENERATION", f"{heat!r}, 0.5, {SPEED!r}"]
+    steps = 2
+    found = state(tmp_path, cards)
+    assert found["wear_slave"][-1] == pytest.approx(steps * K * PRESSURE * SPEED, rel=1e-9)
+
+
 def test_a_bar_at_a_fixed_interference_loses_its_pressure_with_the_first_order(tmp_path):
     exact = PRESSURE * exp(-K * YOUNG * SPEED / LENGTH)
     errors = []

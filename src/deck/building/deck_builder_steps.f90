@@ -13,7 +13,7 @@ module deck_builder_steps
    use kinds, only: dp
    use materials, only: has_law
    use steps, only: adapts_increments, analysis_coupled, analysis_heat, analysis_static, &
-      cycle_type, increment_growth, least_increment, planned_increments, smallest_of_first, smallest_part, &
+      cycle_type, increment_growth, least_increment, planned_increments, smallest_part, &
       solves_heat, solves_mechanics, step_controls_type, step_type, until_displacement, &
       until_force, until_strain
    use text, only: percent, to_text
@@ -374,8 +374,8 @@ contains
          'increment? >0'//trim(merge('/@rate', '      ', most == 5)), deck, given(:most), valid)
       step%first_increment = given(1)
       step%period = given(2)
-      step%smallest_increment = min(smallest_part*step%period, step%first_increment* &
-         merge(smallest_of_first, 1.0_dp, adapts_increments(step)))
+      step%smallest_increment = min(step%first_increment, merge(max(least_increment*step%period, &
+         smallest_part*step%first_increment), smallest_part*step%period, step%is_viscous))
       step%largest_increment = step%first_increment
       if (data%has(3)) step%smallest_increment = given(3)
       if (data%has(4)) step%largest_increment = given(4)
