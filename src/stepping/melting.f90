@@ -211,12 +211,13 @@ contains
       end do
    end subroutine foresee
 
-   !> Moves T' to a solution.
-   pure subroutine move(self, model, temperature)
+   !> Moves T' to a solution, or by a part of the heat that is between both.
+   pure subroutine move(self, model, temperature, part)
       class(melting_type), intent(inout) :: self
       type(model_type), intent(in) :: model
       real(dp), intent(in) :: temperature(:)                 !! (nodes)
-      real(dp) :: content, least
+      real(dp), intent(in) :: part                           !! of the heat, 1 for all
+      real(dp) :: content, least, start
       integer :: i, row
 
       self%changes_rows = .false.
@@ -231,7 +232,9 @@ contains
                   cycle
                end if
                self%jumps = .true.
-               call melted_to(material, heat_capacity(material), there, content, node%at, row)
+               start = latent_content(material, node%at)
+               call melted_to(material, heat_capacity(material), (1.0_dp - part)*node%at + &
+                  part*there, (1.0_dp - part)*start + part*content, node%at, row)
                self%changes_rows = self%changes_rows .or. row /= node%row
                node%row = row
             end associate

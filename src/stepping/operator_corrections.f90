@@ -49,6 +49,7 @@ module operator_corrections
    !> unknowns
    real(dp), parameter :: rounding = 1.0e-13_dp
    integer, parameter :: most_passes = 60
+   integer, parameter :: most_straight = 15      !! passes that move nodes by the same part of heat
    real(dp), parameter :: contracts = 0.3_dp    !! part of what is left over, from pass to pass
    ! Of laws.
    real(dp), parameter :: slow = 0.7_dp         !! part that is left over by a slow pass
@@ -281,8 +282,9 @@ contains
             words_of_law(self, model, next%temperature))
          return
       end if
+      ! Fronts that go to and fro between solutions are met halfway, or before.
       if (self%melting%acts .and. self%stage%stores_heat) call self%melting%move(model, &
-         next%temperature)
+         next%temperature, 0.5_dp**(self%passes/most_straight))
       if (self%left_over < self%least_left_over) then
          self%least_left_over = self%left_over
          self%temperature = next%temperature
