@@ -70,7 +70,7 @@ contains
                ! The drawing has its body on the left, and so have the faces of the slave: both run
                ! against each other.
                x(:, k) = drawing%point(piece, t)
-               master%tangent(:, k) = -side*drawing%tangent(piece, t)
+               master%tangent(:, k) = -side*drawing%mean_tangent(piece, t)
             else
                call drawing%find_nearest(from(:, k), piece, t, x(:, k), beyond)
             end if

@@ -26,6 +26,7 @@ module drawn_lines
       procedure :: sweep
       procedure :: point
       procedure :: tangent
+      procedure :: mean_tangent
       procedure :: find_nearest
       procedure :: find_met
       procedure :: goes_on
@@ -80,6 +81,22 @@ contains
          tangent = tangent/norm2(tangent)
       end if
    end function tangent
+
+   !> Unit tangent where pieces meet, the mean of both; else that of the piece.
+   pure function mean_tangent(self, piece, t) result(mean)
+      class(drawn_line_type), intent(in) :: self
+      integer, intent(in) :: piece
+      real(dp), intent(in) :: t
+      real(dp) :: mean(2)
+      real(dp) :: both(2)                  ! 0 where the line turns back
+      integer :: other
+
+      mean = self%tangent(piece, t)
+      other = piece + merge(1, -1, t > 0.5_dp)
+      if (min(t, 1.0_dp - t) > at_end .or. other < 1 .or. other > size(self%is_arc)) return
+      both = mean + self%tangent(other, merge(0.0_dp, 1.0_dp, t > 0.5_dp))
+      if (norm2(both) > at_end) mean = both/norm2(both)
+   end function mean_tangent
 
    !> The point nearest to another one. Beyond its ends an open line goes on straight.
    pure subroutine find_nearest(self, x, piece, t, foot, beyond)

@@ -303,6 +303,24 @@ def test_a_hot_plate_that_leans_heats_as_its_mirror_image_and_as_one_of_elements
     np.testing.assert_allclose(found[1:], [found[0]] * 2, rtol=1e-6)
 
 
+def test_a_node_below_a_kink_of_a_drawing_is_pressed_as_its_mirror_image(tmp_path):
+    found = []
+    for left, right in ((1.2, 1.0), (1.0, 1.2)):
+        deck = write(tmp_path / f"{left}.inp", mesh("BLOCK", [0.0, 0.5, 1.0, 1.5, 2.0],
+                                                   [0.0, 0.5, 1.0], "CPE4"),
+                     material("BLOCK", (1000.0, 0.3)), [
+            "*NODE", "9001, 1., 2.", "*SURFACE, NAME=PLATE, TYPE=SEGMENTS", f"START, 3., {right!r}",
+            "LINE, 1., 1.", f"LINE, -1., {left!r}",
+            "*RIGID BODY, REF NODE=9001, ANALYTICAL SURFACE=PLATE", *SMOOTH,
+            "*CONTACT PAIR, INTERACTION=SMOOTH, NAME=FACE, PAIRING=NODES", "BLOCK.TOP, PLATE",
+            "*STEP", "*STATIC", "1., 1.", "*BOUNDARY", "BLOCK.BOTTOM, 1, 2", "9001, 1", "9001, 6",
+            "9001, 2, 2, -0.01", "*END STEP"])
+        with h5py.File(solve(deck)) as file:
+            pressure = file["contact/FACE/pressure"][-1]
+            found.append([file["contact/FACE/normal_force"][-1], pressure.max()])
+    np.testing.assert_allclose(found[1], found[0], rtol=1e-9)
+
+
 def test_rotation_that_is_large_is_warned_of(tmp_path):
     cards, _ = heated(60.0)
     deck = tmp_path / "deck.inp"
