@@ -23,7 +23,7 @@ module error_estimator
       not_on_finer_mesh, not_unique, of_axis, of_path, of_step, reason_count, reason_of_run, &
       slides_far
    use quantity_histories, only: quantity_histories_type
-   use quantity_types, only: find_quantity, of_nodes, quantity_type
+   use quantity_types, only: find_quantity, of_history, of_nodes, quantity_type
    use records, only: increment_record_type, uncertainty_type
    use reported_quantities, only: verifiable
    use simulation, only: simulation_type
@@ -343,7 +343,8 @@ contains
             self%divided%run%recovery%points%node, fine, reason)
          if (reason /= '' .or. .not. allocated(fine)) fine = [ieee_value(1.0_dp, ieee_quiet_nan)]
          own = judged(self, quantity, worst_of(check, values), worst_of(check, fine) - &
-            worst_of(check, values), holds, nothing)
+            worst_of(check, values), holds, merge(of_instant(record), nothing, quantity%kind == &
+            of_history))
       end subroutine judge
 
    end subroutine judge_checks
@@ -353,20 +354,26 @@ contains
       type(error_estimator_type), intent(in) :: self
       type(increment_record_type), intent(inout) :: record
       real(dp), dimension(size(history_estimated)) :: finer, values
-      real(dp) :: beside(2)                      ! an instant is known to a part of its increment
       integer :: q
 
-      beside = nothing
-      ! Results of earlier versions do not have the increment.
-      if (allocated(record%solid_time)) beside(2) = sum(record%solid_time(2:))
 
       values = [(history_value(history_estimated(q)%name, record), q=1, size(values))]
       finer = ieee_value(1.0_dp, ieee_quiet_nan)
       if (.not. allocated(self%lost)) finer = [(history_value(history_estimated(q)%name, &
          self%divided%record), q=1, size(finer))]
       record%history_uncertainties = [(judged(self, history_estimated(q), values(q), &
-         finer(q) - values(q), spread(.false., 1, reason_count), beside), q=1, size(values))]
+         finer(q) - values(q), spread(.false., 1, reason_count), of_instant(record)), q=1, size(values))]
    end subroutine judge_history
+
+   !> Scatter and increment beside an instant, which is known to a part of the latter.
+   pure function of_instant(record) result(beside)
+      type(increment_record_type), intent(in) :: record
+      real(dp) :: beside(2)
+
+      beside = nothing
+      ! Results of earlier versions do not have it.
+      if (allocated(record%solid_time)) beside(2) = sum(record%solid_time(2:))
+   end function of_instant
 
    !> A value without an uncertainty, and why.
    elemental function no_uncertainty(value, reason) result(own)

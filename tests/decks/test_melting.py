@@ -7,7 +7,7 @@ import numpy as np
 import pytest
 from blocks import write
 from deck_runs import assert_alike, datasets, run
-from physics import follows, judge, material, mesh
+from physics import follows, judge, material, mesh, nodes_of
 
 KINDS = ["CPS3", "CAX4", "CPE4", "CPE4I"]
 SCHEMES = ["IMPLICIT", "GALERKIN", "CRANK-NICOLSON", "L-STABLE"]
@@ -258,6 +258,10 @@ def test_the_uncertainty_of_a_time_of_solidification_holds(tmp_path, elements, i
     """A front passes one node after the other, so that its change on a finer mesh may be small by
     chance; but not beside the increment."""
     cards, exact = front(elements, 2e-4, 1.3 / increments, 1.3)
-    process = run("run", "--json", write(tmp_path / "front.inp", cards), "--out", tmp_path)
-    found = json.loads(process.stdout)["summary"]["fields"]["solid_time"]
-    assert abs(found["value"] - exact) <= found["uncertainty"]
+    last = next(number for number, place in nodes_of(cards).items() if place[0] == 1.0)
+    asked = ["*VERIFY, KIND=NONE", "solid_time, , LAST", f"SOLID reaches 1., {last}, LAST"]
+    process = run("run", "--json", write(tmp_path / "front.inp", cards, asked), "--out", tmp_path)
+    told = json.loads(process.stdout)
+    for found in (told["summary"]["fields"]["solid_time"], *told["checks"]):
+        assert abs(found["value" if "value" in found else "found"] - exact) <= found["uncertainty"]
+    assert told["checks"][0]["uncertainty"] == told["summary"]["fields"]["solid_time"]["uncertainty"]

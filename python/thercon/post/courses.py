@@ -17,7 +17,7 @@ LABELS = {
     "temperature": ("Temperature of the faces", "temperature"),
     "heat": ("Heat rate", "power"),
 }
-HEAT = {"heat_in": "into the model", "heat_friction": "of friction", "heat_out": "out of it",
+HEAT = {"heat_in": "into the model", "heat_friction": "of friction", "heat_out": "out of the model",
         "heat_stored": "stored", "heat_dilatation": "taken up by strains"}
 FORCES = {"normal_force": "normal", "shear_force": "of friction"}   # of faces that slide
 WORN = {"worn_volume_slave": "slave", "worn_volume_master": "master"}
@@ -25,7 +25,7 @@ FACES = {"slave_temperature": "slave", "master_temperature": "master"}
 MEANS = "Lines are means over {}"
 BANDS = ", bands reach from the smallest to the largest value"
 DECADES = 1e-3  # of the largest heat rate, the smallest that a logarithmic axis shows
-ORDER = {"master": 1, "out of it": 1, "stored": 2, "through the contact": 3,
+ORDER = {"master": 1, "out of the model": 1, "stored": 2, "through the contact": 3,
          "sum over the interfaces": 3,
          "taken up by strains": 4, "of friction": 5}
 RIGHT_ABOVE = {"loc": "lower right", "bbox_to_anchor": (1.02, 0.98)}  # on curves it would hide them
