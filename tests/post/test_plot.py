@@ -1186,20 +1186,21 @@ def test_titles_side_by_side_begin_on_one_height(laid_out, result):
         "\nthick line inside: 1 % of the largest plastic strain; dashed line: solid fraction 0.5")
 
 
-@pytest.mark.parametrize(("axis", "words"), [(0, "$x$ stretched by 10"), (1, "$y$ stretched by 10"), (None, "")])
-def test_a_thin_strip_is_stretched_and_says_by_how_much(laid_out, result, axis, words):
-    """A model 1 to 2, thinned to 1 to 80."""
+@pytest.mark.parametrize(("axis", "ratio", "stretch", "words"), [
+    (0, 80.0, 0.1, "$x$ stretched by 10"), (1, 80.0, 10.0, "$y$ stretched by 10"),
+    (1, 16.0, 2.0, "$y$ stretched by 2"), (None, 2.0, 1.0, "")])
+def test_a_thin_strip_is_stretched_and_says_by_how_much(laid_out, result, axis, ratio, stretch, words):
+    """A model 1 to 2, thinned to the ratio."""
     with h5py.File(result, "r+") as file:
         points = file["VTKHDF/Points"]
         if axis is not None:
             low, high = np.ptp(points[:, axis]), np.ptp(points[:, 1 - axis])
-            points[:, axis] = points[:, axis] * high / (80.0 * low)
+            points[:, axis] = points[:, axis] * high / (ratio * low)
         file["VTKHDF/PointData/displacement"][...] = 0.0
     (figure,) = laid_out("fields", result, "--quantity", "temperature", "yy")
     axes, *_ = panels = panels_of(figure)
     box = axes.get_window_extent()
     drawn = box.width / np.ptp(axes.get_xlim()), box.height / np.ptp(axes.get_ylim())
-    stretch = {0: 0.1, 1: 10.0, None: 1.0}[axis]
     assert drawn[1] / drawn[0] == pytest.approx(stretch, rel=1e-6)
     assert ("stretched" in figure.get_supxlabel()) == bool(words)
     assert words in figure.get_supxlabel()

@@ -57,7 +57,8 @@ TITLES = {
 }
 OF_AXES = {"xx": "Radial stress", "yy": "Axial stress", "zz": "Hoop stress", "xy": "Shear stress"}
 AMPLITUDE = 0.02  # of the size of the model: displacement of a mode that is drawn
-THIN, DRAWN = 20.0, 8.0  # ratio of the sides of a strip that is stretched, and about that drawn
+CAPTION = 0.5  # height of what is told below, in inches
+THIN, DRAWN = 12.0, 8.0  # ratio of the sides of a strip that is stretched, and about that drawn
 COLUMNS = 3  # of panels
 LOOKED_AT = 20  # times at most
 MOST_NAMED = 8  # increments
@@ -168,7 +169,7 @@ def draw_front(axes, grid, fine, fraction):
     if fraction is None or not np.nanmin(fraction) < 0.5 < np.nanmax(fraction):
         return ""
     line = axes.tricontour(grid, fine.values(fraction.astype(float)), levels=[0.5], colors="black",
-                           linewidths=1.4, linestyles="dashed")
+                           linewidths=1.4, linestyles=[(0, (2.0, 1.0))])
     return "dashed line: solid fraction 0.5" if is_seen(axes, line) else ""
 
 
@@ -377,7 +378,7 @@ def layout(count, window):
     if width > WIDE * height:
         size = (
             style.DOUBLE_COLUMN * 0.75,
-            count * (style.DOUBLE_COLUMN * 0.6 * height / width + 1.0),
+            count * (style.DOUBLE_COLUMN * 0.6 * height / width + 1.0) + CAPTION,
         )
         figure, panels = plt.subplots(count, 1, layout="compressed", figsize=size, squeeze=False)
     else:
