@@ -362,7 +362,8 @@ contains
       if (.not. allocated(self%lost)) finer = [(history_value(history_estimated(q)%name, &
          self%divided%record), q=1, size(finer))]
       record%history_uncertainties = [(judged(self, history_estimated(q), values(q), &
-         finer(q) - values(q), spread(.false., 1, reason_count), of_instant(record)), q=1, size(values))]
+         finer(q) - values(q), spread(.false., 1, reason_count), of_instant(record)), q=1, &
+         size(values))]
    end subroutine judge_history
 
    !> Scatter and increment beside an instant, which is known to a part of the latter.
