@@ -356,7 +356,6 @@ contains
       real(dp), dimension(size(history_estimated)) :: finer, values
       integer :: q
 
-
       values = [(history_value(history_estimated(q)%name, record), q=1, size(values))]
       finer = ieee_value(1.0_dp, ieee_quiet_nan)
       if (.not. allocated(self%lost)) finer = [(history_value(history_estimated(q)%name, &

@@ -104,9 +104,9 @@ contains
             faced = first - 1 + findloc(bodies%laws%removed(first:last), .false., dim=1)
             call integrate_hats(bodies%points%mortar(i), edges_of(points, &
                bodies%laws%conductance(faced), opening(first:last), modulus(first:last), &
-               bodies%equilibrium%contact%nodal_stiffness(first:last), bodies%points%mortar(i)), &
-               is_beside(first:last), &
-               beside(found + 1:found + count(is_beside(first:last))))
+               bodies%equilibrium%contact%nodal_stiffness(first:last), bodies%points%mortar(i), &
+               bodies%laws%removed(first:last)), is_beside(first:last), beside(found + 1:found + &
+               count(is_beside(first:last))))
             associate (new => beside(found + 1:found + count(is_beside(first:last))))
                new%is_open = opening(first - 1 + new%point) > 0.0_dp
                new%point = first - 1 + new%point
@@ -281,20 +281,18 @@ contains
    end function has_edge
 
    !> The conductances at the edges of an interface.
-   pure function edges_of(points, law, opening, modulus, stiffness, mortar) result(edges)
+   pure function edges_of(points, law, opening, modulus, stiffness, mortar, is_beyond) result(edges)
       type(contact_points_type), intent(in) :: points
       type(conductance_law_type), intent(in) :: law
       real(dp), intent(in) :: opening(:), modulus(:)  ! (m)
       real(dp), intent(in) :: stiffness(:)            ! (m) at the nodes [force/length]
       type(hat_geometry_type), intent(in) :: mortar
+      logical, intent(in) :: is_beyond(:)             ! (m) the master's end
       type(edges_type) :: edges
       type(contact_profile_type) :: piece, profile
       integer, allocatable :: ends(:)
-      logical :: is_beyond(size(opening))
       integer :: i, k
 
-      is_beyond = .false.
-      if (allocated(points%is_beyond)) is_beyond = points%is_beyond
       profile = contact_profile(points, merge(contact_open, contact_slip, opening > 0.0_dp), &
          max(-opening, 0.0_dp)*modulus, 0.0_dp*opening, merge(opening, opening*modulus* &
          points%weight/max(stiffness, tiny(1.0_dp)), opening > 0.0_dp))

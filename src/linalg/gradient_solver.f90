@@ -78,7 +78,7 @@ contains
       self%schur = reshape([real(dp) ::], [0, 0])
       self%alone = lower
       self%lower = lower
-      self%lower%value(:) = 0.0_dp
+      self%lower%value(:) = 0.0_dp   ! no row has its values yet
       self%followed = spread(0.0_dp, 1, self%order)
       self%factor_bytes = 2*storage_size(1.0_dp)/8*size(lower%value, kind=long)
       self%smallest_pivot = 1.0_dp

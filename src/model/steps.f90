@@ -43,8 +43,8 @@ module steps
 
    !> Least increment as a part of the period; shorter ones are lost in the rounding of the times.
    real(dp), parameter :: least_increment = 1.0e-9_dp
-   !> Smallest increment that steps have by default, as part of their period; of *VISCO of the first
-   !> one, in which stress may relax
+   !> Smallest increment that steps have by default, as part of their period; in *VISCO, where
+   !> stress may relax at once, of the first one
    real(dp), parameter :: smallest_part = 1.0e-5_dp
 
    real(dp), parameter :: increment_growth = 1.5_dp   !! of increments that grow, as in CalculiX

@@ -310,7 +310,7 @@ contains
                   ! Between its increments the course is a parabola rather than a line.
                   bend = abs(slope - earlier_slope)/(time - then + increment)*(reached - then)* &
                      (time - reached)
-                  ! A value that is cut off there, as a solid fraction, came to it before.
+                  ! A value that is cut off there, as a solid fraction, may have come to it before.
                   if (abs(values(i) - self%level) <= 0.0_dp) bend = abs(slope)*(time - then)
                   doubt = (uncertainty + bend)/abs(slope)
                end if

@@ -128,7 +128,8 @@ module records
       real(dp) :: load = 0.0_dp              !! value on the load axis
       real(dp), allocatable :: load_factor   !! of a point of a branch; else unallocated [-]
       logical :: is_fold = .false.           !! whether the load factor turns there
-      real(dp), allocatable :: solid_time(:)   !! as of the state [time]
+      !> (2) when the last point became solid, and the increment in which it did, or none [time]
+      real(dp), allocatable :: solid_time(:)
       real(dp) :: heat_in = 0.0_dp           !! sum of the net rates that are positive [power]
       real(dp) :: heat_out = 0.0_dp          !! magnitude of the sum of the negative ones [power]
       character(:), allocatable :: cycle     !! what a cycle did that it ends; unallocated for none

@@ -222,10 +222,18 @@ contains
       type(step_type), intent(in) :: step
       type(increment_record_type), intent(in) :: record
 
-      excess = max(record%local_error/step%local_error, record%strain_error/step%local_error, &
-         record%creep_difference/step%creep_tolerance, (record%largest_change/ &
-         step%largest_change)**2)
+      excess = max(record%local_error/step%local_error, strain_excess(step, record), &
+         (record%largest_change/step%largest_change)**2)
    end function excess
+
+   !> The same of its inelastic strains.
+   pure real(dp) function strain_excess(step, record)
+      type(step_type), intent(in) :: step
+      type(increment_record_type), intent(in) :: record
+
+      strain_excess = max(record%strain_error/step%local_error, record%creep_difference/ &
+         step%creep_tolerance)
+   end function strain_excess
 
    !> Makes the next attempt shorter than one that went too far, and says why. Sizes are halves of
    !> halves of the first one, so that few are different.
@@ -274,8 +282,8 @@ contains
 
       associate (step => model%steps(self%step))
          if (self%warned_of == self%step .or. .not. adapts_increments(step)) return
-         if (max(record%strain_error/step%local_error, record%creep_difference/ &
-            step%creep_tolerance) <= allowance .or. self%can_cut_back(model, increment_size)) return
+         if (strain_excess(step, record) <= allowance .or. self%can_cut_back(model, &
+            increment_size)) return
          self%warned_of = self%step
          call record%warn('the increment is the smallest of its step and is kept, though '// &
             words_of_excess(step, record)//'; give a smallest increment, the third value of '// &

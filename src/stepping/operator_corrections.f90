@@ -49,7 +49,7 @@ module operator_corrections
    !> unknowns
    real(dp), parameter :: rounding = 1.0e-13_dp
    integer, parameter :: most_passes = 60
-   integer, parameter :: most_straight = 15      !! passes that move nodes by the same part of heat
+   integer, parameter :: passes_per_part = 15    !! after which nodes that melt move half as far
    real(dp), parameter :: contracts = 0.3_dp    !! part of what is left over, from pass to pass
    ! Of laws.
    real(dp), parameter :: slow = 0.7_dp         !! part that is left over by a slow pass
@@ -284,7 +284,7 @@ contains
       end if
       ! Fronts that go to and fro between solutions are met halfway, or before.
       if (self%melting%acts .and. self%stage%stores_heat) call self%melting%move(model, &
-         next%temperature, 0.5_dp**(self%passes/most_straight))
+         next%temperature, 0.5_dp**(self%passes/passes_per_part))
       if (self%left_over < self%least_left_over) then
          self%least_left_over = self%left_over
          self%temperature = next%temperature

@@ -476,7 +476,7 @@ def tilted(way):
 
 
 def test_points_beyond_the_master_tell_no_edge(tmp_path):
-    """To the left is to the right in a mirror: the last pairs have no master, whichever they are."""
+    """To the left is to the right in a mirror: the last points have no master, whichever they are."""
     found = []
     for way in (7.5, -7.5):
         with h5py.File(solve(write(tmp_path / f"{way}.inp",
@@ -486,4 +486,4 @@ def test_points_beyond_the_master_tell_no_edge(tmp_path):
             found.append((face["heat_rate"][-1], edge if way > 0.0 else 10.0 - edge))
             gap = face["gap"][-1][1 if way > 0.0 else -2]
     assert found[0] == pytest.approx(found[1], rel=1e-9)
-    assert 0.0 < found[0][1] < 1.25 and gap > 0.0, "nearer to the pair that is closed"
+    assert 0.0 < found[0][1] < 1.25 and gap > 0.0, "nearer to the point that is closed"

@@ -62,7 +62,8 @@ make_base() {
    mkdir "$base/thercon"
    tar --directory "$tree" --exclude ./build --exclude ./.git --create . |
       tar --directory "$base/thercon" --extract --no-same-owner
-   # All but what is frequent in runs without optimisation, which takes the compiler less than half of the time.
+   # All but what is frequent in runs without optimisation, which takes the compiler less than half
+   # of the time.
    sed --in-place 's/-Og -ffrontend-optimize -g1/-O0/' "$base/thercon/cmake/DefaultFlags.cmake"
    grep -q -e '"-O0 ' "$base/thercon/cmake/DefaultFlags.cmake"
 }
