@@ -322,6 +322,43 @@ def test_a_latent_heat_in_other_units_than_the_specific_heat(tmp_path, heat, uni
     assert all("K times its specific heat" in message for message in found)
 
 
+# Steel by its handbook in each system, and how much heat a unit of work is there.
+@pytest.mark.parametrize(("units", "density", "specific_heat", "work"), [
+    ("mm MPa W C", 7.85e-6, 480.0, 1e-3), ("m Pa W K", 7850.0, 480.0, 1.0), ("cm MPa W C", 7.85e-3, 480.0, 1.0),
+    ("mm MPa mW C", 7.85e-9, 4.8e8, 1.0), ("mm MPa W C min", 7.85e-6, 8.0, 1e-3 / 60), ("m kPa kW C h", 7850.0, 0.48 / 3600, 1 / 3600),
+    ("in psi BTU/h F h", 0.284, 0.115, 1.071e-4)])
+@pytest.mark.parametrize(("times", "parts", "told"), [
+    (1.0, (1.0, 0.9), []), (1e3, (0.5, 0.1), ["*SPECIFIC HEAT"]), (1e-3, (0.5, 0.0), ["*SPECIFIC HEAT"]), (1.0, (0.0, 0.0), []),
+    (1.0, (1.05, 0.9), ["*GAP HEAT GENERATION"]), (1.0, (0.5, 0.005), ["*INELASTIC HEAT FRACTION"])])
+def test_heat_of_a_volume_and_of_work_in_other_units(tmp_path, units, density, specific_heat, work, times, parts, told):
+    eta, fraction = (min(part * work, 1.0) for part in parts)
+    told = [card for card in told if card != "*GAP HEAT GENERATION" or parts[0] * work <= 1.0]
+    cards = [f'*OPTIONS, UNITS="{units}"', *blocks()]
+    where = cards.index("*ELASTIC")
+    cards[where:where] = ["*PLASTIC", "1.E30, 0.", "*DENSITY", repr(density), "*SPECIFIC HEAT", repr(specific_heat * times),
+                          "*INELASTIC HEAT FRACTION", repr(fraction)]
+    pair = [PAIR[0], "*FRICTION", "0.3", "*GAP HEAT GENERATION", repr(eta), *PAIR[1:]]
+    step = ["*INITIAL CONDITIONS, TYPE=TEMPERATURE", "LOW, 20.", "HIGH, 20.", "*BOUNDARY", "HIGH, 11, 11, 20.", *(
+        "*COUPLED TEMPERATURE-DISPLACEMENT" if card == "*STATIC" else card for card in STEP)]
+    found = [(message, card) for message, card in warnings(tmp_path, cards, pair, HELD, step) if "UNITS=" in message]
+    assert [card for _, card in found if not card.startswith(("*ELASTIC", "*CONDUCTIVITY"))] == told
+
+
+@pytest.mark.parametrize(("units", "told"), [
+    ("mm MPa W C", "1 MPa mm^3/s is 1E-3 W"), ("mm MPa mW C", None), ("m Pa W C", None), ("m kPa W C min", "1 kPa m^3/min is 16.6667 W")])
+def test_heat_of_strains_needs_the_unit_of_work(tmp_path, units, told):
+    cards = heated("20.")
+    where = cards.index("*ELASTIC")
+    cards[where:where] = ["*DENSITY", "7.85E-6", "*SPECIFIC HEAT", "480.", "*EXPANSION", "1.E-9"]
+    cards = ["*COUPLED TEMPERATURE-DISPLACEMENT, DILATATION=YES" if card.startswith("*HEAT") else card for card in cards]
+    cards = [f'*OPTIONS, UNITS="{units}"', CONSTANTS.format("-273.15", "1."), *cards[:-1], "LOW.BOTTOM, 1, 2", cards[-1]]
+    found = [(message, card) for message, card in warnings(tmp_path, cards) if "DILATATION" in message]
+    assert len(found) == (told is not None)
+    for message, card in found:
+        assert told in message
+        assert card.startswith("*COUPLED")
+
+
 def test_units_are_judged_beside_errors_elsewhere(tmp_path):
     """A property that cannot be read has no unit; that of the other is told in the same check."""
     label = ['*OPTIONS, UNITS="m Pa W C"']

@@ -23,7 +23,7 @@ module deck_builder
    use deck_context, only: deck_type
    use deck_report, only: deck_report_type, heatless
    use deck_structure, only: cards_of, check_structure
-   use heat_checks, only: check_heat_paths, check_starts, check_units
+   use heat_checks, only: check_heat_paths, check_starts
    use mesh_checks, only: check_folds
    use load_application, only: apply_requests, collect_fields, turn_equations
    use load_checks, only: check_amplitudes, first_heat
@@ -33,6 +33,7 @@ module deck_builder
    use steps, only: analysis_coupled, analysis_static, solves_heat, solves_mechanics
    use text, only: to_text
    use touch_checks, only: check_touches
+   use unit_checks, only: check_units
    implicit none
    private
    public :: build_model

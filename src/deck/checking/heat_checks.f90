@@ -1,6 +1,5 @@
 !> Slips that steps with heat show: contact without a law for its conductance, films on faces in
-!> contact, coefficients of expansion in another unit than the temperatures; and constants in other
-!> units than *OPTIONS, UNITS= says.
+!> contact, and coefficients of expansion in another unit than the temperatures.
 module heat_checks
    use conductance_laws, only: law_none
    use contact_definitions, only: is_removed
@@ -10,58 +9,17 @@ module heat_checks
    use facing_faces, only: lie_on
    use kinds, only: dp
    use load_requests, only: request_type
-   use materials, only: follows_temperature, heat_capacity, of_expansion, property_keywords
+   use materials, only: follows_temperature, of_expansion
    use model, only: model_type
    use steps, only: dof_temperature, load_film_coefficient, load_film_sink, load_temperature, &
       solves_heat, solves_mechanics
-   use text, only: counted, to_text, to_upper
+   use text, only: counted, to_text
    implicit none
    private
-   public :: check_heat_paths, check_starts, check_units
+   public :: check_heat_paths, check_starts, temperature_range
 
    real(dp), parameter :: small_strain = 0.1_dp   !! largest for which small strains hold
    real(dp), parameter :: far = 0.25_dp   !! of a table's span, from ZERO= to where bodies start
-
-   !> Stefan-Boltzmann constant, CODATA 2018 [W/(m^2 K^4)].
-   real(dp), parameter :: stefan_boltzmann = 5.670374419e-8_dp
-
-   !> A unit by its labels, which blanks separate.
-   type :: unit_type
-      character(25) :: labels
-      real(dp) :: size                !! [K], [m], [W], [Pa]
-      real(dp) :: zero = 0.0_dp       !! absolute zero of a scale of temperature
-   end type unit_type
-
-   type(unit_type), parameter :: temperatures(4) = [ &
-      unit_type('C CELSIUS', 1.0_dp, -273.15_dp), unit_type('K KELVIN', 1.0_dp), &
-      unit_type('F FAHRENHEIT', 5.0_dp/9, -459.67_dp), unit_type('R RANKINE', 5.0_dp/9)]
-
-   type(unit_type), parameter :: lengths(7) = [ &
-      unit_type('M', 1.0_dp), unit_type('DM', 1.0e-1_dp), unit_type('CM', 1.0e-2_dp), &
-      unit_type('MM', 1.0e-3_dp), unit_type('UM', 1.0e-6_dp), unit_type('FT', 0.3048_dp), &
-      unit_type('IN INCH', 0.0254_dp)]
-
-   !> Labels of power are as written: m is milli and M mega.
-   type(unit_type), parameter :: powers(7) = [ &
-      unit_type('W w J/s', 1.0_dp), unit_type('mW mJ/s Nmm/s N*mm/s', 1.0e-3_dp), &
-      unit_type('kW KW kJ/s', 1.0e3_dp), unit_type('MW MJ/s', 1.0e6_dp), &
-      unit_type('erg/s', 1.0e-7_dp), unit_type('BTU/s Btu/s', 1055.05585_dp), &
-      unit_type('BTU/h Btu/h BTU/hr Btu/hr', 0.29307107_dp)]
-
-   type(unit_type), parameter :: stresses(7) = [ &
-      unit_type('PA N/M2 N/M^2', 1.0_dp), unit_type('KPA', 1.0e3_dp), &
-      unit_type('MPA N/MM2 N/MM^2', 1.0e6_dp), unit_type('GPA', 1.0e9_dp), &
-      unit_type('BAR', 1.0e5_dp), unit_type('PSI', 6894.757_dp), unit_type('KSI', 6.894757e6_dp)]
-
-   ! Least and largest of solids: gels, and a thousand times diamond, because stiff bodies stand for
-   ! rigid ones; aerogels and pure copper at 20 K.
-   real(dp), parameter :: moduli(2) = [1.0e3_dp, 1.2e15_dp]         !! [Pa]
-   real(dp), parameter :: conductivities(2) = [1.0e-2_dp, 1.0e4_dp] !! [W/(m K)]
-   ! Of latent over specific heat: white phosphorus has 27, carbon 14,000.
-   real(dp), parameter :: latent_ratios(2) = [5.0_dp, 2.0e4_dp]   !! [K]
-
-   real(dp), parameter :: other_digits = 0.01_dp   !! relative difference of a constant
-   real(dp), parameter :: other_scale = 0.5_dp     !! difference of absolute zero [K]
 
 contains
 
@@ -273,137 +231,5 @@ contains
          end associate
       end if
    end subroutine widen
-
-   !> Warns of constants in other units than the deck says, and of temperatures below absolute zero:
-   !> of what was read, where the deck has errors.
-   subroutine check_units(deck)
-      type(deck_type), intent(inout) :: deck
-      type(unit_type) :: degree, metre, pascal, watt
-      real(dp) :: constant, ratio
-      integer :: k, m
-
-      degree = unit_of(scale_label(deck%model%units%temperature), temperatures)
-      metre = unit_of(to_upper(deck%model%units%length), lengths)
-      watt = unit_of(deck%model%units%power, powers)
-      pascal = unit_of(to_upper(deck%model%units%stress), stresses)
-      m = 0
-      do k = 1, size(deck%cards%keywords)
-         call deck%open_card(k)
-         select case (deck%card%name)
-         case ('PHYSICAL CONSTANTS')
-            if (deck%has_errors()) cycle   ! it may have one, or temperatures
-            call check_zero(degree, deck)
-            if (min(degree%size, metre%size, watt%size) <= 0.0_dp .or. .not. deck%card%has( &
-               'STEFAN BOLTZMANN')) cycle
-            constant = stefan_boltzmann*metre%size**2*degree%size**4/watt%size
-            associate (given => deck%model%constants%stefan_boltzmann, units => deck%model%units)
-               if (abs(given - constant) <= other_digits*constant) cycle
-               call deck%warning(deck%card%place_of('STEFAN BOLTZMANN'), 'the constant of '// &
-                  'Stefan and Boltzmann is '//to_text(given)//', but '//to_text(constant)// &
-                  ' in the units of *OPTIONS, UNITS=, '//units%power//'/('//units%length//'^2 '// &
-                  units%temperature//'^4); give that, or correct UNITS=')
-            end associate
-         case ('MATERIAL')
-            m = m + 1
-         case ('ELASTIC')
-            if (any(solves_mechanics(deck%model%steps%analysis))) call check_property(m, &
-               pascal%size, deck)
-         case ('CONDUCTIVITY')
-            if (min(degree%size, metre%size) > 0.0_dp .and. &
-               any(solves_heat(deck%model%steps%analysis))) call check_property(m, &
-               watt%size/(metre%size*degree%size), deck)
-         case ('LATENT HEAT')
-            if (m == 0 .or. degree%size <= 0.0_dp) cycle
-            associate (material => deck%model%materials(m))
-               if (.not. allocated(material%melting) .or. heat_capacity(material) <= 0.0_dp) cycle
-               ratio = degree%size*sum(material%melting%content)/heat_capacity(material)
-               if (ratio < latent_ratios(1) .or. ratio > latent_ratios(2)) call deck%warning( &
-                  deck%card%place, 'the latent heat of '//material%name//' is '//to_text(ratio)// &
-                  ' K times its specific heat, beyond the '//to_text(latent_ratios(1))//' to '// &
-                  to_text(latent_ratios(2))//' K of solids; give it in the units of *SPECIFIC '// &
-                  'HEAT, such as J/kg, not kJ/kg')
-            end associate
-         case default
-            cycle
-         end select
-      end do
-   end subroutine check_units
-
-   !> Warns of a property whose first constant is none of a solid.
-   subroutine check_property(m, unit, deck)
-      integer, intent(in) :: m                            ! index of its material, or 0
-      real(dp), intent(in) :: unit                        ! [Pa] or [W/(m K)], 0 where not known
-      type(deck_type), intent(inout) :: deck
-      character(:), allocatable :: si_unit
-      real(dp) :: ends(2), value
-      integer :: i
-
-      if (m == 0 .or. unit <= 0.0_dp) return
-      ends = merge(moduli, conductivities, deck%card%name == 'ELASTIC')
-      si_unit = trim(merge('Pa     ', 'W/(m K)', deck%card%name == 'ELASTIC'))
-      associate (material => deck%model%materials(m))
-         if (.not. allocated(material%given)) return
-         do i = 1, size(material%given)
-            if (property_keywords(material%given(i)%kind) /= deck%card%name) cycle
-            value = maxval(material%given(i)%values(1, :))
-            if (value*unit <= ends(2)) value = minval(material%given(i)%values(1, :))
-            if (value*unit >= ends(1) .and. value*unit <= ends(2)) cycle
-            call deck%warning(deck%card%place, trim(material%given(i)%names(1))//' '// &
-               to_text(value)//' of '//material%name//' is '//to_text(value*unit)//' '//si_unit// &
-               ' in the units of *OPTIONS, UNITS=, beyond the '//to_text(ends(1))//' to '// &
-               to_text(ends(2))//' '//si_unit//' of solids; give it in those units, or correct '// &
-               'UNITS=')
-         end do
-      end associate
-   end subroutine check_property
-
-   subroutine check_zero(scale, deck)
-      type(unit_type), intent(in) :: scale                ! of temperature
-      type(deck_type), intent(inout) :: deck
-      character(:), allocatable :: message
-      real(dp) :: least(2)
-
-      if (.not. deck%card%has('ABSOLUTE ZERO')) return
-      least = temperature_range(deck%model)
-      associate (given => deck%model%constants%absolute_zero, label => deck%model%units%temperature)
-         message = 'absolute zero is '//to_text(given)
-         if (abs(given - scale%zero)*scale%size > other_scale) then
-            message = message//', but '//to_text(scale%zero)//' in '//label//', the unit of '// &
-               '*OPTIONS, UNITS=; give that, or correct UNITS='
-         else if (given > 0.0_dp) then
-            message = message//', above 0: it is -273.15 in C, -459.67 in F and 0 in K'
-         else if (least(1) < given) then
-            message = message//', but the deck has a temperature of '//to_text(least(1))// &
-               ', below it; give both in one unit: absolute zero is -273.15 in C, -459.67 in F '// &
-               'and 0 in K'
-         else
-            return
-         end if
-      end associate
-      call deck%warning(deck%card%place_of('ABSOLUTE ZERO'), message)
-   end subroutine check_zero
-
-   !> Finds a unit; its size is 0 where the label is not known.
-   pure type(unit_type) function unit_of(label, units)
-      character(*), intent(in) :: label
-      type(unit_type), intent(in) :: units(:)
-      integer :: i
-
-      unit_of = unit_type('', 0.0_dp)
-      do i = 1, size(units)
-         if (index(' '//trim(units(i)%labels)//' ', ' '//label//' ') > 0) unit_of = units(i)
-      end do
-   end function unit_of
-
-   !> A label of a scale of temperature without the sign or the word for a degree.
-   pure function scale_label(label) result(name)
-      character(*), intent(in) :: label
-      character(*), parameter :: degree_sign = char(194)//char(176)
-      character(:), allocatable :: name
-
-      name = to_upper(label)
-      if (index(name, degree_sign) == 1) name = name(3:)
-      if (index(name, 'DEG') == 1) name = name(4:)
-   end function scale_label
 
 end module heat_checks
