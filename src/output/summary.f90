@@ -63,6 +63,8 @@ module summary
       real(dp), allocatable :: heat(:)                        !! by heat_quantities
       !> The largest magnitude of a displacement [length]
       real(dp), allocatable :: displacement
+      integer, private :: molten_node = 0                     !! least solid one, 0 where all is solid
+      real(dp), private :: least_solid = 1.0_dp               !! its solid fraction [-]
       character(:), allocatable, private :: cycle             !! what the last cycle did, or none
       character(:), allocatable, private :: many_increments   !! why a step had so many, or nothing
       integer :: printed = 0                                  !! rows of tables that were asked for
@@ -113,6 +115,10 @@ contains
             mask=counts), maxval(fields%temperature, mask=counts), record%heat_in, record%heat_out]
          if (allocated(fields%stress)) self%displacement = maxval(norm2(fields%displacement, &
             dim=1), mask=counts)
+         if (allocated(fields%solid_fraction)) then
+            self%molten_node = minloc(fields%solid_fraction, dim=1, mask=fields%solid_fraction < 1)
+            self%least_solid = minval(fields%solid_fraction)
+         end if
       end associate
    end subroutine take
 
@@ -219,6 +225,8 @@ contains
       if (allocated(self%last%solid_time)) call append(lines, summary_line('all solid at', &
          self%last%solid_time(1), history_words(self, model, 'solid_time'), or_blank( &
          model%units%time), ''))
+      if (self%molten_node > 0) call append(lines, summary_line('solid fraction', &
+         self%least_solid, '', '-', 'least at '//place_words(model%mesh, self%molten_node)))
       if (allocated(self%cycle)) call append(lines, self%cycle)
       if (allocated(self%many_increments)) call append(lines, self%many_increments)
       if (self%printed > many_rows) call append(lines, to_text(self%printed)//' rows of *NODE '// &

@@ -47,6 +47,18 @@ def test_a_body_that_is_cooled_evenly_gives_off_its_latent_heat(tmp_path, kind):
     follows(tmp_path, make, 25.0, 40.0)
 
 
+@pytest.mark.parametrize(("begin", "power", "said"), [
+    (40.0, 20.0, r"solid fraction +0\.8, least at node \d+ \(.*\)"), (40.0, 35.0, r"all solid at +\S+ .*"), (20.0, 15.0, None)])
+def test_the_summary_tells_what_is_not_solid_yet(tmp_path, begin, power, said):
+    """From 40 in one second: 10 to the liquidus, then 12.5 to the solidus, of which 10 are of melting."""
+    cards = [*melting(["5., 27.5, 30."]), *start(begin), *step("*DFLUX", f"BODY, BF, -{power!r}", times="0.25, 1.")]
+    process = run("run", write(tmp_path / "deck.inp", cards), "--out", tmp_path)
+    assert process.returncode == 0, process.stderr
+    told = [line.strip() for line in process.stdout.splitlines() if "solid" in line]
+    assert len(told) == (said is not None)
+    assert all(re.fullmatch(said, line) for line in told)
+
+
 @pytest.mark.parametrize("scheme", SCHEMES)
 def test_two_rows_take_up_their_heats_one_after_the_other(tmp_path, scheme):
     """Solid fractions are shares of the whole latent heat; the last point is solid at a time that
