@@ -63,7 +63,7 @@ module summary
       real(dp), allocatable :: heat(:)                        !! by heat_quantities
       !> The largest magnitude of a displacement [length]
       real(dp), allocatable :: displacement
-      integer, private :: molten_node = 0                     !! least solid one, 0 where all is solid
+      integer, private :: molten_node = 0                     !! with the least fraction; 0: solid
       real(dp), private :: least_solid = 1.0_dp               !! its solid fraction [-]
       character(:), allocatable, private :: cycle             !! what the last cycle did, or none
       character(:), allocatable, private :: many_increments   !! why a step had so many, or nothing

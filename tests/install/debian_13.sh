@@ -62,10 +62,10 @@ make_base() {
    mkdir "$base/thercon"
    tar --directory "$tree" --exclude ./build --exclude ./.git --create . |
       tar --directory "$base/thercon" --extract --no-same-owner
-   # All but what is frequent in runs without optimisation, which takes the compiler less than half
-   # of the time.
-   sed --in-place 's/-Og -ffrontend-optimize -g1/-O0/' "$base/thercon/cmake/DefaultFlags.cmake"
-   grep -q -e '"-O0 ' "$base/thercon/cmake/DefaultFlags.cmake"
+   # Without optimisation, which takes the compiler half of the time.
+   local flags=("$base/thercon/"{cmake/DefaultFlags.cmake,CMakeLists.txt})
+   sed --in-place 's/-Og -ffrontend-optimize -g1/-O0/; s/>:-O[13]>/>:-O0>/' "${flags[@]}"
+   [[ $(cat "${flags[@]}" | grep -c -e '"-O0 ' -e '>:-O0>') == 4 ]]
 }
 
 set_up() {
