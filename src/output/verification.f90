@@ -6,6 +6,7 @@ module verification
    use contact_points, only: contact_points_type
    use due_output, only: is_followed, is_judged
    use kinds, only: dp
+   use materials, only: melts
    use model, only: model_type, verify_type
    use no_estimates, only: mark_of, no_finer_value, no_reason, of_points, reason_inside_step
    use records, only: increment_record_type
@@ -270,22 +271,32 @@ contains
       integer, intent(in) :: point_node(:)                   !! (points) node index of each point
       real(dp), intent(in) :: uncertainty                    !! of a single value, or NaN
       type(increment_record_type) :: start
-      real(dp), allocatable :: values(:)
+      real(dp), allocatable :: kinks(:), values(:)
       character(:), allocatable :: reason
+      integer :: m
 
+      ! Where temperatures melt their course bends, by whatever it is there.
+      allocate (kinks(0))
+      if (check%quantity == 'NT') then
+         do m = 1, size(model%materials)
+            if (melts(model%materials(m))) kinks = [kinks, model%materials(m)%melting%solidus, &
+               model%materials(m)%melting%liquidus]
+         end do
+      end if
       if (record%increment == 1 .and. any(initially_known == check%quantity)) then
          start%fields%temperature = model%initial_temperature
          allocate (start%fields%displacement(2, size(model%initial_temperature)), source=0.0_dp)
          call values_asked_for(check, start, model, interfaces, point_node, values, reason)
-         if (reason == '') call take(self, values, 0.0_dp, 0.0_dp)
+         if (reason == '') call take(self, values, 0.0_dp, 0.0_dp, kinks)
       end if
       call values_asked_for(check, record, model, interfaces, point_node, values, reason)
-      if (reason == '') call take(self, values, record%time, uncertainty)
+      if (reason == '') call take(self, values, record%time, uncertainty, kinks)
    end subroutine follow
 
-   pure subroutine take(self, values, time, uncertainty)
+   pure subroutine take(self, values, time, uncertainty, kinks)
       type(reached_level_type), intent(inout) :: self
       real(dp), intent(in) :: values(:), time, uncertainty
+      real(dp), intent(in) :: kinks(:)   ! values at which a course may bend within an increment
       real(dp) :: bend, slope
       integer :: i
 
@@ -311,7 +322,8 @@ contains
                   bend = abs(slope - earlier_slope)/(time - then + increment)*(reached - then)* &
                      (time - reached)
                   ! A value that is cut off there, as a solid fraction, may have come to it before.
-                  if (abs(values(i) - self%level) <= 0.0_dp) bend = abs(slope)*(time - then)
+                  if (abs(values(i) - self%level) <= 0.0_dp .or. any((before < kinks) .neqv. &
+                     (values(i) < kinks))) bend = abs(slope)*(time - then)
                   doubt = (uncertainty + bend)/abs(slope)
                end if
                earlier_slope = slope

@@ -59,6 +59,19 @@ def test_the_summary_tells_what_is_not_solid_yet(tmp_path, begin, power, said):
     assert all(re.fullmatch(said, line) for line in told)
 
 
+@pytest.mark.parametrize("increment", [2.8, 1.4, 0.7, 0.35])
+def test_times_at_which_levels_are_reached_hold_across_a_plateau(tmp_path, increment):
+    """From 40 by 20 a time: 0.5 to the liquidus, 1 to the solidus, half of it for melting."""
+    levels = {35.0: 0.25, 25.0: 1.0, 15.0: 1.75, 5.0: 2.25}
+    cards = ["*OPTIONS, ERRORS=FULL", "*THERMAL SCHEME, TYPE=IMPLICIT", *melting(["5., 20., 30."]), *start(40.0),
+             *step("*DFLUX", "BODY, BF, -20.", times=f"{increment!r}, 2.8")]
+    asked = ["*VERIFY, KIND=NONE", *(f"NT reaches {level!r}, 1, LAST" for level in levels)]
+    process = run("run", "--json", write(tmp_path / "deck.inp", cards, asked), "--out", tmp_path)
+    assert process.returncode == 0, process.stderr
+    for check, exact in zip(json.loads(process.stdout)["checks"], levels.values(), strict=True):
+        assert abs(check["found"] - exact) <= check["uncertainty"] + 1e-9 <= increment + 1e-3
+
+
 @pytest.mark.parametrize("scheme", SCHEMES)
 def test_two_rows_take_up_their_heats_one_after_the_other(tmp_path, scheme):
     """Solid fractions are shares of the whole latent heat; the last point is solid at a time that
