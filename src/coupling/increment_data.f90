@@ -91,6 +91,7 @@ module increment_data
       real(dp), allocatable :: displacement(:)             !! (2 nodes) u* likewise
       !> (nodes) heat contents likewise, where properties follow temperatures [energy]
       real(dp), allocatable :: content(:)
+      real(dp), allocatable :: worked(:) !! (nodes) heat of inelastic work likewise [energy]
       real(dp), allocatable :: jump(:)   !! (nodes) of temperatures where the step begins
       !> (m) slip that counts as made before it; unallocated for none [length]
       real(dp), allocatable :: slip_before(:)

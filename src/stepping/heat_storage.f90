@@ -49,6 +49,8 @@ contains
             if (run%control%increments_of_step == 0) call begin_storage(run, model, start)
             if (run%corrections%corrects) stage%content = run%corrections%true_contents(model, &
                start%temperature)
+            if (run%corrections%heats) stage%worked = run%corrections%inelastic_heat(model, &
+               start%history)
             stage%jump = start%temperature - run%state%temperature
             stage%temperature = start%temperature
             stage%displacement = start%displacement
@@ -79,6 +81,8 @@ contains
          stage%displacement = start%displacement + weight*(middle%displacement - start%displacement)
          if (run%corrections%corrects) stage%content = stage%content + weight* &
             (run%corrections%true_contents(model, middle%temperature) - stage%content)
+         if (allocated(stage%worked)) stage%worked = stage%worked + weight* &
+            (run%corrections%inelastic_heat(model, middle%history) - stage%worked)
       end if
       if (allocated(run%bodies%points%heated) .and. stage%strains) stage%slip_before = &
          slips_before(run%bodies, middle%contact)

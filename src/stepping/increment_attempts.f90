@@ -176,8 +176,9 @@ contains
          ! Heat that strains take up, T0 beta:eps' over all bodies. Loads that act at once strain
          ! bodies within the first stage.
          next%dilatation = 0.0_dp
-         if (run%corrections%heats .and. step%is_transient) next%dilatation = &
-            -sum(run%corrections%inelastic_heat(model))/attempt%stage%duration
+         if (allocated(attempt%stage%worked)) next%dilatation = -sum( &
+            run%corrections%inelastic_heat(model, next%history) - attempt%stage%worked)/ &
+            attempt%stage%duration
          if (step%dilates) next%dilatation = sum(bodies%dilatation%of_strains(bodies%thermal_load, &
             next%displacement - attempt%before%displacement))/attempt%stage%size
          if (attempt%stage%is_last) then

@@ -519,14 +519,16 @@ contains
          self%stage%content - of_capacity
       if (allocated(self%strain_before)) values(:n) = values(:n) + bodies%dilatation%taken_up( &
          bodies%thermal_load, displacement, temperature) - self%strain_before
-      if (self%heats .and. self%stage%strains) values(:n) = values(:n) - self%inelastic_heat(model)
+      if (allocated(self%stage%worked) .and. self%stage%strains) values(:n) = values(:n) - ( &
+         self%inelastic_heat(model, self%history%after) - self%stage%worked)
       values(:n) = values(:n)/self%stage%duration
    end function corrections_of
 
-   !> Heat that inelastic work makes in the stage, on the nodes.
-   pure function inelastic_heat(self, model) result(heat)
+   !> Heat that inelastic work has made, on the nodes.
+   pure function inelastic_heat(self, model, remembered) result(heat)
       class(corrections_type), intent(in) :: self
       type(model_type), intent(in) :: model
+      real(dp), intent(in) :: remembered(:)                  !! (numbers) by all points
       real(dp) :: heat(size(model%mesh%node_number))         !! (nodes) [energy]
       real(dp) :: work(most, 2)
       integer :: g, i
@@ -535,8 +537,7 @@ contains
       do i = 1, size(self%elements)
          associate (mesh => model%mesh, points => self%points, e => self%elements(i))
             if (.not. points%follows_law(mesh, e)) cycle
-            work = points%inelastic_work(mesh, e, self%history%after) - points%inelastic_work( &
-               mesh, e, self%history%before)
+            work = points%inelastic_work(mesh, e, remembered)
             associate (rule => points%rules(mesh%element_kind(e)), first => points%first(e), &
                law => points%library(points%sections(mesh%element_section(e))%material)%law)
                do g = 1, rule%count

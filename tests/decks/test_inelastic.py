@@ -490,6 +490,21 @@ def test_inelastic_work_heats_the_body(tmp_path):
     follows(tmp_path, make, 0.9, 0.4)
 
 
+@pytest.mark.parametrize("scheme", ["IMPLICIT", "L-STABLE"])
+@pytest.mark.parametrize("more", [[], ["*ANNEAL TEMPERATURE", "900."]], ids=["", "annealed"])
+@pytest.mark.parametrize("times", ["1., 1.", "0.25, 1."])
+def test_work_of_a_strain_at_once_heats_the_body_once(tmp_path, scheme, more, times):
+    # The second stage of an increment in which strain jumps starts where the first one ended.
+    cards = [f"*THERMAL SCHEME, TYPE={scheme}",
+             *bar("*PLASTIC", "200.", "*INELASTIC HEAT FRACTION", "0.9", *more, conductivity=1.0,
+                  density=2.0, specific_heat=0.25), "*INITIAL CONDITIONS, TYPE=TEMPERATURE", "BODY, 20.",
+             *stretched(0.011, "*COUPLED TEMPERATURE-DISPLACEMENT, DIRECT", times)]
+    judge(tmp_path, cards, [
+        ("NT", "BODY", "LAST", 20.0 + 0.9 * 200.0 * (0.011 - 200.0 / YOUNG) / 0.5, 1e-9),
+        ("ALLPD", "", "LAST", 200.0 * (0.011 - 200.0 / YOUNG), 1e-9),
+        ("heat_imbalance", "", "LAST", 0.0, 1e-8, "ABS")])
+
+
 def joint_of_esposito(held):
     """Return the joint of docs/compare.md [mm, MPa, s], with all planes held or its ends free."""
     radii = [float(x) for x in np.linspace(4.51, 5.315, 17)]
