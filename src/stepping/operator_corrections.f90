@@ -57,6 +57,7 @@ module operator_corrections
    real(dp), parameter :: astray = 1.0e-4_dp    !! least that operators leave over which lead astray
    real(dp), parameter :: safe_part = 0.5_dp    !! of the elasticity in tangents behind such ones
    real(dp), parameter :: least_rank = 1.0e-8_dp   !! tolerance of the mixing
+   real(dp), parameter :: most_ahead = 10.0_dp   !! increments that corrections are foreseen
    integer, parameter :: most_slow = 6, most_with_operators = 25   !! passes
 
    !> Fields at points, and the elements of the bodies whose materials vary.
@@ -192,6 +193,8 @@ contains
          self%melting%acts)
       if (goes_on .and. allocated(bodies%operators_at)) goes_on = &
          bodies%has_operators_of(before%operators_at, before%tangent)
+      if (allocated(before%corrections_before)) goes_on = goes_on .and. stage%size <= most_ahead* &
+         before%increment_size
       if (takes_past .or. .not. goes_on) self%heat_before = self%heat_beyond(model, bodies, &
          before%temperature)
       if (.not. goes_on) then

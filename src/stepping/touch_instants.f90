@@ -14,7 +14,8 @@ module touch_instants
    private
    public :: touch_search_type
 
-   real(dp), parameter :: small = 1.0e-3_dp   !! part of the distance at the start that is none
+   !> Part of the distance at the start, and of the first attempt, that is none.
+   real(dp), parameter :: small = 1.0e-3_dp
    integer, parameter :: most_tries = 20      !! attempts at one instant
    real(dp), parameter :: rounding = 1.0e3_dp !! of gaps, in the least length of the contact points
    !> Part of the first attempt, and part of the distance that is left within it, of a touch that
@@ -66,8 +67,10 @@ contains
       if (ends_behind) return
       if (self%tries == 1) self%first = [times(2) - times(1), abs(at_end)]
       ! Loads that act at once close it where the increment begins.
-      ends_behind = passes .and. times(2) - times(1) <= short*self%first(1) .and. &
-         abs(at_end) > nearer*self%first(2)
+      associate (part => (times(2) - times(1))/self%first(1))
+         ends_behind = passes .and. (part <= small .or. part <= short .and. abs(at_end) > nearer* &
+            self%first(2))
+      end associate
       if (ends_behind) return
       if (self%tries > 1) then
          ! It takes the place of the end of its kind; the other one counts half if it stays a second

@@ -1,6 +1,7 @@
 """A body that is held all around has the capacity at constant strain, rho c_p - T0 beta:alpha, which
 must be positive."""
 
+import json
 import re
 
 import h5py
@@ -105,3 +106,33 @@ def test_an_even_stretch_takes_up_heat_at_an_even_rate(tmp_path, scheme):
         f"*THERMAL SCHEME, TYPE={scheme}", "*BOUNDARY, AMPLITUDE=EVENLY", "BODY, 2", "BODY.LEFT, 1",
         f"BODY.RIGHT, 1, 1, {rate * width!r}", "*END STEP"],
         [("heat_dilatation", "", when, taken, 1e-9) for when in ("0.25", "LAST")])
+
+
+@pytest.mark.parametrize("strains", ["", ", DILATATION=YES"], ids=["", "heat of strains"])
+@pytest.mark.parametrize("errors", ["NO", "FULL"])
+def test_a_jump_that_closes_a_gap_at_once_is_followed(tmp_path, strains, errors):
+    """A face that is 100 hotter at once lengthens its bar by more than the gap; the first increment
+    ends just behind. The force is linear in the gap: that is uniaxial strain."""
+    young, poisson, length = 2e5, 0.3, 20.0
+    held = young * (1 - poisson) / (1 + poisson) / (1 - 2 * poisson) * 2.0 / length
+    given = {"elastic": (young, poisson), "expansion": 2e-5, "conductivity": 20.0, "density": 1.0, "specific_heat": 3.0}
+    forces = []
+    for gap in (0.0175, 0.018, 0.0183):
+        folder = tmp_path / str(gap)
+        folder.mkdir()
+        deck = write(folder / "deck.inp", [
+            f"*OPTIONS, ERRORS={errors}", "*PHYSICAL CONSTANTS, ABSOLUTE ZERO=-273.15",
+            *mesh("LOW", [0.0, 2.0], [0.0, 10.0], "CPE4"), *mesh("HIGH", [0.0, 2.0], [10.0, 20.0], "CPE4", first=101),
+            *material("LOW", **given), *material("HIGH", **given),
+            "*INITIAL CONDITIONS, TYPE=TEMPERATURE", "LOW, 20.", "HIGH, 20.",
+            "*SURFACE INTERACTION, NAME=I", "*GAP LAW, TYPE=GAS", "0.005, 0.001", "*CONTACT PAIR, INTERACTION=I, NAME=J",
+            "LOW.TOP, HIGH.BOTTOM", f"*CLEARANCE, SLAVE=LOW.TOP, MASTER=HIGH.BOTTOM, VALUE={gap!r}",
+            "*STEP, INC=5000", f"*COUPLED TEMPERATURE-DISPLACEMENT{strains}", "0.5, 10.", "*BOUNDARY", "LOW, 1", "HIGH, 1",
+            "LOW.BOTTOM, 2", "HIGH.TOP, 2", "LOW.BOTTOM, 11, 11, 120.", "*END STEP"])
+        process = run("run", "--json", deck, "--out", folder)
+        assert process.returncode == 0, process.stderr
+        forces.append(json.loads(process.stdout)["summary"]["interfaces"]["J"]["normal_force"]["value"])
+    slope = (forces[0] - forces[1]) / 0.0005
+    assert (forces[1] - forces[2]) / 0.0003 == pytest.approx(slope, rel=1e-3)
+    # The heat of strains stiffens a bar, by its capacity at constant strain.
+    assert slope == pytest.approx(held, rel=1e-3) if strains == "" else held < slope < 1.03 * held
