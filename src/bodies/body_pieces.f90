@@ -252,20 +252,24 @@ contains
       kept = left%compress(matrix%row_count, matrix%row_count)
    end subroutine reduce
 
-   !> The degrees of freedom of each piece, and those around it.
+   !> The degrees of freedom of each piece, and those around it. One whose degrees of freedom are all
+   !> prescribed is none.
    pure subroutine find_pieces(self, matrix, piece)
       type(body_pieces_type), intent(inout) :: self
       type(sparse_matrix_type), intent(in) :: matrix
       integer, intent(in) :: piece(:)
       integer, allocatable :: inside(:), start(:)
-      integer :: around(size(piece)), i, j, k, last(size(piece)), n
+      integer :: around(size(piece)), i, j, k, last(size(piece)), m, n
 
       call invert_lists(reshape(piece, [1, size(piece)]), merge(1, 0, piece > 0), &
          maxval([0, piece]), start, inside)
-      allocate (self%piece(size(start) - 1))
+      allocate (self%piece(count(start(2:) > start(:size(start) - 1))))
       last = 0
-      do i = 1, size(self%piece)
-         self%piece(i)%inside = inside(start(i):start(i + 1) - 1)
+      m = 0
+      do i = 1, size(start) - 1
+         if (start(i + 1) == start(i)) cycle
+         m = m + 1
+         self%piece(m)%inside = inside(start(i):start(i + 1) - 1)
          n = 0
          do j = start(i), start(i + 1) - 1
             do k = matrix%row_start(inside(j)), matrix%row_start(inside(j) + 1) - 1
@@ -277,7 +281,7 @@ contains
                end associate
             end do
          end do
-         self%piece(i)%around = around(:n)
+         self%piece(m)%around = around(:n)
       end do
    end subroutine find_pieces
 

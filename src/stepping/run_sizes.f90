@@ -103,7 +103,9 @@ contains
          if (allocated(field%solver)) call measure(field%solver)
          if (.not. allocated(field%pieces%piece)) return
          do k = 1, size(field%pieces%piece)
-            call measure(field%pieces%piece(k)%solver)
+            associate (piece => field%pieces%piece(k))
+               if (allocated(piece%solver)) call measure(piece%solver)
+            end associate
          end do
       end subroutine measure_field
 

@@ -487,3 +487,17 @@ def test_points_beyond_the_master_tell_no_edge(tmp_path):
             gap = face["gap"][-1][1 if way > 0.0 else -2]
     assert found[0] == pytest.approx(found[1], rel=1e-9)
     assert 0.0 < found[0][1] < 1.25 and gap > 0.0, "nearer to the point that is closed"
+
+
+def test_a_body_whose_free_nodes_are_all_prescribed_or_in_contact_has_no_inside(tmp_path):
+    """One row of elements, its upper nodes moved: nothing of it is left to eliminate."""
+    block = mesh("UPPER", [3.0, 5.0, 7.0], [4.0, 6.0], "CPE4", first=501)
+    base = mesh("LOWER", np.linspace(0.0, 10.0, 6), [0.0, 2.0, 4.0], "CPE4")
+    found = [final(tmp_path, solver, without_unused_surfaces([
+        *block, *base, *material("UPPER", (1000.0, 0.3)), *material("LOWER", (1000.0, 0.3)),
+        "*SURFACE INTERACTION, NAME=FACES", f"*CONTACT PAIR, INTERACTION=FACES, NAME=FACE{FINITE}",
+        "UPPER.BOTTOM, LOWER.TOP", f"*SOLVER, TYPE={solver}", "*STEP", "*STATIC", "0.5, 1.",
+        "*BOUNDARY", "LOWER.BOTTOM, 1, 2", "UPPER.TOP, 1, 1, 0.1", "UPPER.TOP, 2, 2, -0.01",
+        "*END STEP"])) for solver in ("MUMPS", "SKYLINE")]
+    assert found[0]["pressure"].max() > 1.0
+    assert_same_fields(*found, 1e-10)
