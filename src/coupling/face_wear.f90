@@ -2,6 +2,7 @@
 !> points, as of soft faces: a pressure p takes the gap c p farther. So the pressure belongs to the
 !> worn faces, and however fast they wear, increments are stable.
 module face_wear
+   use contact_operator, only: law_pressure
    use contact_system, only: contact_open
    use kinds, only: dp
    use overlap_laws, only: overlap_law_type
@@ -70,30 +71,27 @@ contains
       if (allocated(bodies%laws%overlap)) overlap = bodies%laws%overlap
       do k = 1, size(overlap)
          associate (opens => bodies%laws%worn_part(k)*by_pressure(k))
-            if (bodies%points%weight(k) <= 0.0_dp .or. opens <= rigid*compliance(k)) cycle
+            if (opens <= rigid*compliance(k)) cycle
             overlap(k)%overlap = [0.0_dp, opens]
             overlap(k)%pressure = [0.0_dp, 1.0_dp]
          end associate
       end do
    end function worn_overlaps
 
-   !> Wears the faces at the end of an increment, which then touch without overlap.
+   !> Wears the faces at the end of an increment, which then touch without overlap; contact points of
+   !> weight 0, which carry no force, by the limit of the profile.
    pure subroutine wear_faces(bodies, before, by_pressure, next)
       type(reduced_bodies_type), intent(in) :: bodies
       type(solution_state_type), intent(in) :: before       !! at the start
       real(dp), intent(in) :: by_pressure(:)                !! (m) with which it was solved
       type(solution_state_type), intent(inout) :: next      !! at the end
 
-      next%wear = before%wear
       next%worn_volume = before%worn_volume
-      associate (weight => bodies%points%weight, contact => next%contact)
-         where (weight > 0.0_dp .and. contact%contact_state /= contact_open)
-            next%wear = next%wear + by_pressure*contact%force/weight
-            ! Areas of faces that slide follow their strains.
-            next%worn_volume = next%worn_volume + by_pressure*contact%force
-         end where
-         where (bodies%laws%worn_part*by_pressure > 0.0_dp .and. contact%contact_state /= &
-            contact_open) contact%gap = 0.0_dp
+      associate (contact => next%contact, closed => next%contact%contact_state /= contact_open)
+         next%wear = before%wear + by_pressure*law_pressure(bodies, contact)
+         ! Areas of faces that slide follow their strains.
+         where (closed) next%worn_volume = next%worn_volume + by_pressure*contact%force
+         where (bodies%laws%worn_part*by_pressure > 0.0_dp .and. closed) contact%gap = 0.0_dp
       end associate
    end subroutine wear_faces
 

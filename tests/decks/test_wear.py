@@ -73,6 +73,25 @@ def test_faces_that_slide_out_of_the_plane_wear_with_heat_of_friction_and_withou
     assert found["wear_slave"][-1] == pytest.approx(2 * K * PRESSURE * SPEED, rel=1e-9)
 
 
+@pytest.mark.parametrize("pairing", ["NODES", "SURFACES"])
+@pytest.mark.parametrize("kind", ["CAX8", "CAX4"])
+def test_a_disc_wears_on_its_axis_as_elsewhere(tmp_path, kind, pairing):
+    """On the axis three-node sides give weight 0."""
+    size, push, time = 4.0, 0.0018, 100.0
+    cards = [*mesh("DISC", [0.0, 2.0, size], [0.0, size], kind), *mesh("BASE", [0.0, 2.0, size], [-size, 0.0], kind, first=101),
+             *material("DISC", (YOUNG, 0.0)), *material("BASE", (YOUNG, 0.0)),
+             "*SURFACE INTERACTION, NAME=I", "*FRICTION", "0.1", "*GAP HEAT GENERATION", "1., 0.5, 1.", "*WEAR", f"{K}, 1.",
+             f"*CONTACT PAIR, INTERACTION=I, NAME=C, PAIRING={pairing}", "DISC.BOTTOM, BASE.TOP",
+             "*BOUNDARY", "DISC, 1", "BASE, 1", "BASE.BOTTOM, 2", f"DISC.TOP, 2, 2, {-push!r}",
+             "*STEP, INC=1000", "*STATIC, DIRECT", f"0.25, {time!r}", "*END STEP"]
+    found = state(tmp_path, cards)
+    # Worn while pushed evenly: 2 h p / E + w = d t / T, w' = K p v.
+    rate = YOUNG * K / (2 * size)
+    pressure = push / (K * time) * (1 - exp(-rate * time))
+    assert found["pressure"][-1] == pytest.approx(pressure, rel=2e-3)
+    assert found["wear_slave"][-1] == pytest.approx(push - 2 * size * pressure / YOUNG, rel=2e-3)
+
+
 def test_a_bar_at_a_fixed_interference_loses_its_pressure_with_the_first_order(tmp_path):
     exact = PRESSURE * exp(-K * YOUNG * SPEED / LENGTH)
     errors = []
