@@ -252,8 +252,8 @@ contains
       kept = left%compress(matrix%row_count, matrix%row_count)
    end subroutine reduce
 
-   !> The degrees of freedom of each piece, and those around it. One whose degrees of freedom are all
-   !> prescribed is none.
+   !> The degrees of freedom of each piece, and those around it; where all are prescribed there is no
+   !> piece.
    pure subroutine find_pieces(self, matrix, piece)
       type(body_pieces_type), intent(inout) :: self
       type(sparse_matrix_type), intent(in) :: matrix

@@ -56,7 +56,6 @@ contains
       if (allocated(error)) return
       largest = maxval(abs(mesh%coordinates))
       points%finest_gap = max(points%finest_gap, single*largest)
-      where (abs(points%initial_gap) <= touching*largest) points%initial_gap = 0.0_dp
       if (definition%adjusts .and. definition%adjusted_set == 0) then
          where (points%initial_gap <= definition%adjusted) points%initial_gap = 0.0_dp
       else if (definition%adjusts) then
@@ -95,6 +94,9 @@ contains
             call find_points(mesh, definition, slaves, masters, thickness, points, error)
          end if
       end associate
+      if (allocated(error) .or. .not. allocated(points%initial_gap)) return
+      where (abs(points%initial_gap) <= touching*maxval(abs(mesh%coordinates))) points%initial_gap &
+         = 0.0_dp
    end subroutine find_opposite_points
 
    !> The contact points of a surface and the line of a rigid body: mortar points, or with

@@ -501,3 +501,19 @@ def test_a_body_whose_free_nodes_are_all_prescribed_or_in_contact_has_no_inside(
         "*END STEP"])) for solver in ("MUMPS", "SKYLINE")]
     assert found[0]["pressure"].max() > 1.0
     assert_same_fields(*found, 1e-10)
+
+
+@pytest.mark.parametrize("unit", [1.0, 1e-3, 0.3, 7.0])
+@pytest.mark.parametrize("pair", ["", ", PAIRING=SURFACES"])
+def test_a_face_that_lies_on_a_drawing_to_rounding_touches_it(tmp_path, unit, pair):
+    """A disc on a drawing that bends at its edge; heat alone, so that nothing presses."""
+    radius, height = 10.0 * unit, 5.0 * unit
+    judge(tmp_path, [
+        *mesh("DISC", [0.0, radius], [0.0, height], "CAX4"), *material("DISC", None, conductivity=4.0 * unit),
+        "*NODE, NSET=REF", f"900, 0., {-unit!r}", "*SURFACE, NAME=DIE, TYPE=SEGMENTS", "START, 0., 0.",
+        f"LINE, {radius!r}, 0.", f"LINE, {2 * radius!r}, {0.43181129346902686 * unit!r}",
+        "*RIGID BODY, REF NODE=REF, ANALYTICAL SURFACE=DIE", "*SURFACE INTERACTION, NAME=I",
+        "*GAP CONDUCTANCE, PRESSURE", "5., 0.", "10., 100.", f"*CONTACT PAIR, INTERACTION=I, NAME=FACE{FINITE}{pair}",
+        "DISC.BOTTOM, DIE", "*BOUNDARY", "DISC.TOP, 11, 11, 400.", "REF, 11, 11, 78.", "*STEP",
+        "*HEAT TRANSFER, STEADY STATE", "1., 1.", "*END STEP"], [
+        ("heat_rate", "FACE", "LAST", np.pi * radius**2 * (400.0 - 78.0) / (5.0 / 4.0 + 1.0 / 5.0), 1e-9)])
