@@ -42,6 +42,7 @@ module body_pieces
    contains
       procedure :: cuts_bodies
       procedure :: is_tail
+      procedure :: keeps
       procedure :: divide
    end type body_division_type
 
@@ -104,6 +105,15 @@ contains
 
       is_tail = allocated(self%piece) .and. self%cuts_bodies()
    end function is_tail
+
+   !> Whether a degree of freedom is inside of no piece.
+   pure logical function keeps(self, dof)
+      class(body_division_type), intent(in) :: self
+      integer, intent(in) :: dof
+
+      keeps = .not. allocated(self%piece)
+      if (.not. keeps) keeps = self%piece(dof) == 0
+   end function keeps
 
    !> The piece inside of which each node is, 0 for kept ones.
    pure function divided_bodies(graph, is_bound) result(piece)
@@ -252,8 +262,7 @@ contains
       kept = left%compress(matrix%row_count, matrix%row_count)
    end subroutine reduce
 
-   !> The degrees of freedom of each piece, and those around it; where all are prescribed there is no
-   !> piece.
+   !> The degrees of freedom of each piece, and those around it; none where all are prescribed.
    pure subroutine find_pieces(self, matrix, piece)
       type(body_pieces_type), intent(inout) :: self
       type(sparse_matrix_type), intent(in) :: matrix

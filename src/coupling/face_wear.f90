@@ -78,7 +78,7 @@ contains
       end do
    end function worn_overlaps
 
-   !> Wears the faces at the end of an increment, which then touch without overlap; contact points of
+   !> Wears the faces at the end of an increment, which then touch without overlap; points of
    !> weight 0, which carry no force, by the limit of the profile.
    pure subroutine wear_faces(bodies, before, by_pressure, next)
       type(reduced_bodies_type), intent(in) :: bodies

@@ -101,6 +101,7 @@ contains
       type(error_type), allocatable, intent(out) :: error
       real(dp), allocatable :: inside(:), left(:)
       real(dp), allocatable :: sources(:)   ! (nodes) right-hand side of (3.4) over a1 [power]
+      integer :: k
 
       sources = trial%data%equation%history(bodies%thermal%matrix)
       ! Heat of friction is known as far as it is made at the start.
@@ -115,6 +116,11 @@ contains
          call heat%condense_load(bodies%thermal, data%heat, trial%known(of_heat), error, &
             temperature, inside)
          if (allocated(error)) return
+         ! Nodes of no element, to which bars are held, keep theirs.
+         do k = 1, size(temperature)
+            if (bodies%thermal%map%moves(k) .or. bodies%thermal%map%is_given(k)) cycle
+            if (bodies%thermal%division%keeps(k)) temperature(k) = data%equation%temperature_old(k)
+         end do
          data%held_jump = bodies%points%jumps(given)
          where (bodies%jump_index > 0) data%held_jump = 0.0_dp
          if (bodies%points%vary_with_temperature()) data%welded_mean = &

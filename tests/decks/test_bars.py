@@ -120,3 +120,19 @@ def test_springs_along_degrees_of_freedom_as_in_calculix(tmp_path, spring):
                  "BODY.TOP, P, 20.", "*CLOAD", "3, 1, 4.", "*NODE PRINT, NSET=BODY", "U",
                  "*EL PRINT, ELSET=BODY", "S", "*END STEP"])
     assert_within(found, DIGITS)
+
+
+@pytest.mark.parametrize("analysis", ["*COUPLED TEMPERATURE-DISPLACEMENT, STEADY STATE", "*COUPLED TEMPERATURE-DISPLACEMENT"])
+@pytest.mark.parametrize("coupled", [True, False])
+def test_an_anchor_of_no_element_keeps_its_temperature_where_heat_is_solved(tmp_path, analysis, coupled):
+    """A truss along (3, 4)/5 is warmed by 100 at its one end, by 50 in the mean; E A alpha is 2."""
+    steps = ["*STEP", analysis if coupled else "*STATIC", "1., 1.", "*BOUNDARY", "BODY, 1, 2", "ANCHOR, 1, 2",
+             *(["BODY, 11, 11, 120."] if coupled else ["*TEMPERATURE", "BODY, 120."]), "*END STEP"]
+    body = mesh("BODY", [0.0, 1.0], [0.0, 1.0], "CPS4")
+    end = next(number for number, place in nodes_of(body).items() if place == (1.0, 1.0))
+    judge(tmp_path, [
+        *body, *material("BODY", (1000.0, 0.3), 0.0, conductivity=1.0, density=1.0, specific_heat=1.0),
+        *anchor(4.0, 5.0), "*MATERIAL, NAME=BAR", "*ELASTIC", "1.E5, 0.3", "*EXPANSION", "1.E-5",
+        "*CONDUCTIVITY", "1.", "*ELEMENT, TYPE=T2D2, ELSET=BAR", f"51, {end}, 101", "*SOLID SECTION, ELSET=BAR, MATERIAL=BAR", "2.",
+        "*INITIAL CONDITIONS, TYPE=TEMPERATURE", "BODY, 20.", "ANCHOR, 20.", *steps],
+        [("RF1", "101", "LAST", -2.0 * 50.0 * 0.6, EXACT), ("RF2", "101", "LAST", -2.0 * 50.0 * 0.8, EXACT)])
