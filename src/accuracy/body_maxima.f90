@@ -14,7 +14,7 @@ module body_maxima
    use divided_mesh, only: divided_mesh_type
    use element_kinds, only: element_corner_count, element_node_count
    use element_sides, only: element_sides_type, find_sides, side_ends
-   use equations, only: coupled_nodes
+   use equations, only: coupled_nodes, equation_type
    use field_quantities, only: maxima, point_values
    use field_recovery, only: point_map_type
    use kinds, only: dp
@@ -364,14 +364,14 @@ contains
       end associate
    end function are_sharp
 
-   !> Nodes on which loads, supports, springs or trusses act where none does on a node of the same
-   !> elements in its direction.
+   !> Nodes on which loads, supports, springs, trusses or equations act where none does on a node of
+   !> the same elements in its direction.
    pure function are_loaded_alone(model, record) result(alone)
       type(model_type), intent(in) :: model
       type(increment_record_type), intent(in) :: record
       logical :: alone(size(model%mesh%node_number))
       logical, dimension(2, size(model%mesh%node_number)) :: acts, has_neighbour
-      integer :: d, e, i, k
+      integer :: d, e, i
 
       alone = .false.
       acts = .false.
@@ -380,11 +380,10 @@ contains
          acts = abs(force) > no_force*maxval(abs(force))
       end associate
       do i = 1, size(model%bars)
-         associate (ends => model%bars(i)%elongation)
-            do k = 1, size(ends%node)
-               acts(ends%dof(k), ends%node(k)) = .true.
-            end do
-         end associate
+         call mark(model%bars(i)%elongation, acts)
+      end do
+      do i = 1, model%deck_equations
+         if (.not. model%equations(i)%is_thermal()) call mark(model%equations(i), acts)
       end do
       has_neighbour = .false.
       do e = 1, size(model%mesh%element_number)
@@ -396,6 +395,16 @@ contains
          end associate
       end do
       alone = any(acts .and. .not. has_neighbour, dim=1)
+   contains
+      pure subroutine mark(relation, acts)
+         type(equation_type), intent(in) :: relation
+         logical, intent(inout) :: acts(:, :)             ! (2, nodes)
+         integer :: k
+
+         do k = 1, size(relation%node)
+            acts(relation%dof(k), relation%node(k)) = .true.
+         end do
+      end subroutine mark
    end function are_loaded_alone
 
    !> The ends of a surface, which are in one of its sides alone; not those on a line of symmetry,

@@ -26,7 +26,7 @@ refined. Summary and listing name these corners if stress is larger round them:
   one side is clamped and 90 where it is held in one direction (M. L. Williams, J. Appl. Mech. 19
   (1952) 526-528);
 - nodes at the outline where materials meet, ends of ties and of contacts where one face goes on;
-- nodes with a force, a support or a spring of their own. Forces on the nodes of a side act as
+- nodes with a force, support, spring or equation of their own. Forces on the nodes of a side act as
   single forces, so that uncertainties there are far too large: use \\*DSLOAD.
 
 No uncertainty knows the shape of faces that linear elements make straight. The rule is judged on

@@ -55,6 +55,20 @@ def test_a_force_on_one_node_is_singular(tmp_path):
     assert re.search(corner((0.5, 1)), head)
 
 
+def test_a_node_that_an_equation_pulls_alone_is_singular(tmp_path):
+    """A node of no element moves it; a whole side that equations pull is none."""
+    cards = block()
+    top = sorted(n for n, p in nodes_of(cards).items() if p[1] == 1.0)
+    (middle,) = [n for n, p in nodes_of(cards).items() if p == (0.5, 1.0)]
+    for name, pulled in (("one", [middle]), ("all", top)):
+        folder = tmp_path / name
+        folder.mkdir()
+        pulls = [card for n in pulled for card in ("*EQUATION", "2", f"{n}, 2, 1., 900, 2, -1.")]
+        head, _ = summary(folder, *cards, "*NODE", "900, 2., 2.", *material("BODY"), *pulls, *STATIC,
+                          "BODY.BOTTOM, 2", "BODY.LEFT, 1", "900, 1", "900, 2, 2, -0.01", "*END STEP")
+        assert bool(re.search(corner((0.5, 1)), head)) == (name == "one")
+
+
 def test_a_reentrant_corner_is_singular(tmp_path):
     # An L whose inner corner is (1, 1).
     cards, number, elements = ["*NODE, NSET=ALL"], {}, []
