@@ -171,8 +171,9 @@ contains
       end associate
       record%local_error = maxval(abs(run%heat_reductions(run%in_use)%welded_response( &
          run%bodies%thermal, part*(next%stored - stored))))/range
-      record%largest_change = maxval(abs(next%temperature - start%temperature), &
-         mask=.not. run%loads%temperature%active)
+      ! 0 where all are prescribed.
+      record%largest_change = max(0.0_dp, maxval(abs(next%temperature - start%temperature), &
+         mask=.not. run%loads%temperature%active))
    end subroutine measure_changes
 
    !> Lowest and highest temperature of the bodies.

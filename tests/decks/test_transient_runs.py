@@ -288,3 +288,15 @@ def test_the_summary_says_what_makes_increments_of_a_step_many(tmp_path, how, to
     step[0] = "*STEP, INC=20"
     process = run("run", write(tmp_path / "few.inp", cards + step), "--out", tmp_path)
     assert "of its period 1; a larger LOCAL ERROR=, CETOL= or DELTMX= takes fewer" in process.stderr
+
+
+@pytest.mark.parametrize("deltmx", ["", ", DELTMX=50."])
+def test_increments_grow_where_all_temperatures_are_prescribed(tmp_path, deltmx):
+    """None of them is free, so none errs: the increments double from 0.01 on."""
+    cards = [*mesh("BODY", [0.0, 1.0], [0.0, 1.0], "CPS4"),
+             *material("BODY", (2e5, 0.3), 1e-5, conductivity=10.0, density=1.0, specific_heat=3.0),
+             "*INITIAL CONDITIONS, TYPE=TEMPERATURE", "BODY, 20.", "*AMPLITUDE, NAME=UP", "0., 20., 10., 120.",
+             "*STEP", f"*COUPLED TEMPERATURE-DISPLACEMENT{deltmx}", "0.01, 10.", "*BOUNDARY", "BODY.LEFT, 1", "BODY.BOTTOM, 2",
+             "*BOUNDARY, AMPLITUDE=UP", "BODY, 11, 11, 1.", "*END STEP"]
+    with h5py.File(solve(write(tmp_path / "deck.inp", cards))) as file:
+        assert 8 <= len(file["history/time"]) <= 20

@@ -109,11 +109,13 @@ contains
       heat = any(solves_heat(deck%model%steps%analysis))
       do m = 1, size(deck%model%materials)
          if (.not. any(deck%model%sections%material == m)) cycle
-         associate (material => deck%model%materials(m))
+         associate (material => deck%model%materials(m), section => deck%mesh%element_section)
             if (mechanics .and. .not. material%has(of_elasticity)) call deck%missing( &
                deck%material_place(m), 'material '//material%name//' has no *ELASTIC, which a '// &
                'step with displacements needs', '*ELASTIC')
-            if (heat .and. .not. material%has(of_conductivity)) call deck%missing( &
+            ! Trusses do not conduct.
+            if (heat .and. any(deck%model%sections(pack(section, section > 0))%material == m) .and. &
+               .not. material%has(of_conductivity)) call deck%missing( &
                deck%material_place(m), 'material '//material%name//' has no *CONDUCTIVITY, '// &
                'which a step with heat needs', '*CONDUCTIVITY')
             if (.not. (mechanics .and. material%has(of_elasticity))) cycle
