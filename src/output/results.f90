@@ -374,7 +374,8 @@ contains
          has(needs_temperature) = has(needs_heat) .or. any(model%materials%has(of_expansion))
          has(needs_mechanics) = any(solves_mechanics(analysis))
          has(needs_storage) = any(model%steps%is_transient)
-         has(needs_dilatation) = any(model%steps%dilates)
+         has(needs_dilatation) = any(model%steps%dilates .or. model%steps%is_transient .and. &
+            any(model%materials%law%heat_fraction > 0.0_dp))
          has(needs_stability) = any(model%steps%stability_frequency > 0)
          has(needs_branch) = any(model%steps%continuation%is_on)
          has(needs_sections) = has(needs_mechanics) .and. size(section_nodes(model%couplings)) > 0

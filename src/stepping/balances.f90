@@ -76,7 +76,8 @@ contains
       if (data%equation%duration > 0.0_dp) then
          rates%stored = next%stored
          record%heat_stored = sum(next%stored)
-         if (model%steps(record%step)%dilates) record%heat_dilatation = next%dilatation
+         if (model%steps(record%step)%dilates .or. any(model%materials%law%heat_fraction > &
+            0.0_dp)) record%heat_dilatation = next%dilatation
          record%heat_stored = record%heat_stored - next%dilatation
       end if
       if (allocated(data%friction%heat)) then

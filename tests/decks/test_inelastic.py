@@ -503,6 +503,10 @@ def test_work_of_a_strain_at_once_heats_the_body_once(tmp_path, scheme, more, ti
         ("NT", "BODY", "LAST", 20.0 + 0.9 * 200.0 * (0.011 - 200.0 / YOUNG) / 0.5, 1e-9),
         ("ALLPD", "", "LAST", 200.0 * (0.011 - 200.0 / YOUNG), 1e-9),
         ("heat_imbalance", "", "LAST", 0.0, 1e-8, "ABS")])
+    with h5py.File(tmp_path / "deck.vtkhdf") as file:
+        stored, made = (file[f"history/heat_{name}"][()] for name in ("stored", "dilatation"))
+    assert abs(made[0]) > 1.0
+    np.testing.assert_allclose(stored + made, 0.0, atol=1e-8 * abs(made[0]))
 
 
 def joint_of_esposito(held):
