@@ -46,9 +46,9 @@ contains
             step%continuation%is_on) call set_error(error, &
             status_no_convergence, 'step '//to_text(control%step)//' is not finished after INC='// &
             counted(step%max_increments, 'increment')//', at '//to_text(control%step_time)// &
-            ' of its period '//to_text(step%period))
+            ' of its period '//to_text(step%period)//'; a larger INC= allows more')
          if (allocated(error) .and. adapts_increments(step)) error%message = error%message// &
-            '; a larger LOCAL ERROR=, CETOL= or DELTMX= takes fewer'
+            ', a larger LOCAL ERROR=, CETOL= or DELTMX= takes fewer'
       end associate
       if (allocated(error)) return
       call run%reduce(model, error)

@@ -232,6 +232,7 @@ def test_inc_counts_increments_and_not_attempts(deck):
     process = run("run", "--quiet", path, "--out", path.parent)
     assert process.returncode == 2
     assert f"step 1 is not finished after INC={count - 1} increments, at " in process.stderr
+    assert "of its period 1; a larger INC= allows more; the listing" in process.stderr
     assert len(history(path.with_suffix(".vtkhdf"), "time")) == count - 1
 
 

@@ -287,7 +287,8 @@ def test_the_summary_says_what_makes_increments_of_a_step_many(tmp_path, how, to
         assert int(line[1]) > 100
     step[0] = "*STEP, INC=20"
     process = run("run", write(tmp_path / "few.inp", cards + step), "--out", tmp_path)
-    assert "of its period 1; a larger LOCAL ERROR=, CETOL= or DELTMX= takes fewer" in process.stderr
+    assert ("of its period 1; a larger INC= allows more, a larger LOCAL ERROR=, CETOL= or DELTMX= "
+            "takes fewer") in process.stderr
 
 
 @pytest.mark.parametrize("deltmx", ["", ", DELTMX=50."])
