@@ -311,6 +311,17 @@ def test_properties_that_no_solid_has_in_the_units_of_the_deck(tmp_path, units, 
     assert all(told[card] in message and "units of *OPTIONS, UNITS=, beyond the" in message for message, card in found)
 
 
+@pytest.mark.parametrize(("units", "told"), [
+    ("MPa mm W C s", "MPa is a stress, but stands where the length is"), ("mm N W K s", "N is a force, but stands where the stress is"),
+    ("mm MPa C W", "C is a temperature, but stands where the power is"), ("m Pa W s", "s is a time, but stands where the temperature is"),
+    ("mm MPa W degC s", None), ("furlong stone horse Z", None), ("mm MPa", None)])
+def test_a_unit_in_the_place_of_another(tmp_path, units, told):
+    label = f'*OPTIONS, UNITS="{units}"'
+    found = [message for message, card in warnings(tmp_path, [label], heated("20.")) if card == label]
+    words = ": UNITS= has length, stress, power, temperature, time"
+    assert found == ([told + words] if told else [])
+
+
 @pytest.mark.parametrize(("heat", "units", "told"), [
     (3.9e5, "mm MPa W C", False), (390.0, "mm MPa W C", True), (3.9e8, "mm MPa W C", True), (390.0, "furlong MPa W Z", False)])
 def test_a_latent_heat_in_other_units_than_the_specific_heat(tmp_path, heat, units, told):

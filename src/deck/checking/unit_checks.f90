@@ -6,7 +6,7 @@ module unit_checks
    use materials, only: heat_capacity, of_density, of_specific_heat, property_keywords
    use model, only: unit_labels_type
    use steps, only: solves_heat, solves_mechanics
-   use text, only: to_text, to_upper
+   use text, only: string_type, to_text, to_upper
    implicit none
    private
    public :: check_units
@@ -46,6 +46,12 @@ module unit_checks
       unit_type('S SEC', 1.0_dp), unit_type('MS', 1.0e-3_dp), unit_type('MIN', 60.0_dp), &
       unit_type('H HR', 3600.0_dp), unit_type('D DAY', 86400.0_dp)]
 
+   type(unit_type), parameter :: forces(1) = unit_type('N KN MN LBF', 1.0_dp)   !! none of UNITS=
+
+   !> Kinds in the order of UNITS=, and one that is mistaken for stress.
+   character(*), parameter :: kinds(6) = [character(11) :: 'length', 'stress', 'power', &
+      'temperature', 'time', 'force']
+
    ! Least and largest of solids: gels, and a thousand times diamond, because stiff bodies stand for
    ! rigid ones; aerogels and pure copper at 20 K.
    real(dp), parameter :: moduli(2) = [1.0e3_dp, 1.2e15_dp]         !! [Pa]
@@ -68,11 +74,11 @@ contains
       integer :: interaction, k, m
 
       associate (units => deck%model%units)
-         degree = unit_of(scale_label(units%temperature), temperatures)
-         metre = unit_of(to_upper(units%length), lengths)
-         watt = unit_of(units%power, powers)
-         pascal = unit_of(to_upper(units%stress), stresses)
-         second = unit_of(to_upper(time_label(units)), times)
+         degree = unit_of(units%temperature, 'temperature')
+         metre = unit_of(units%length, 'length')
+         watt = unit_of(units%power, 'power')
+         pascal = unit_of(units%stress, 'stress')
+         second = unit_of(time_label(units), 'time')
       end associate
       heat = watt%size*second%size
       work = pascal%size*metre%size**3
@@ -81,6 +87,8 @@ contains
       do k = 1, size(deck%cards%keywords)
          call deck%open_card(k)
          select case (deck%card%name)
+         case ('OPTIONS')
+            if (deck%card%has('UNITS')) call check_labels(deck)
          case ('PHYSICAL CONSTANTS')
             if (deck%has_errors()) cycle   ! it may have one, or temperatures
             call check_zero(degree, deck)
@@ -127,6 +135,32 @@ contains
          work/heat)//' in the units of *OPTIONS, UNITS=; give power in stress length^3/time, '// &
          'or correct UNITS=')
    end subroutine check_units
+
+   !> Warns of the first label of UNITS= that is no known unit of its place but one of another.
+   subroutine check_labels(deck)
+      type(deck_type), intent(inout) :: deck
+      type(string_type) :: labels(5)
+      type(unit_type) :: unit
+      integer :: kind, place
+
+      labels(1)%value = deck%model%units%length
+      labels(2)%value = deck%model%units%stress
+      labels(3)%value = deck%model%units%power
+      labels(4)%value = deck%model%units%temperature
+      labels(5)%value = deck%model%units%time
+      do place = 1, size(labels)
+         unit = unit_of(labels(place)%value, kinds(place))
+         if (unit%size > 0.0_dp) cycle
+         do kind = 1, size(kinds)
+            unit = unit_of(labels(place)%value, kinds(kind))
+            if (unit%size <= 0.0_dp) cycle
+            call deck%warning(deck%card%place_of('UNITS'), labels(place)%value//' is a '// &
+               trim(kinds(kind))//', but stands where the '//trim(kinds(place))//' is: UNITS= '// &
+               'has length, stress, power, temperature, time')
+            return
+         end do
+      end do
+   end subroutine check_labels
 
    !> How much heat work is, in units of the deck.
    pure function rate_of_work(units, heat) result(words)
@@ -260,17 +294,36 @@ contains
       call deck%warning(deck%card%place_of('ABSOLUTE ZERO'), message)
    end subroutine check_zero
 
-   !> Finds a unit; its size is 0 where the label is not known.
-   pure type(unit_type) function unit_of(label, units)
+   !> Finds a unit of a kind; its size is 0 where the label is not known.
+   pure type(unit_type) function unit_of(label, kind)
+      character(*), intent(in) :: label, kind
+
+      select case (kind)
+      case ('length')
+         unit_of = unit_among(to_upper(label), lengths)
+      case ('stress')
+         unit_of = unit_among(to_upper(label), stresses)
+      case ('power')
+         unit_of = unit_among(label, powers)
+      case ('temperature')
+         unit_of = unit_among(scale_label(label), temperatures)
+      case ('time')
+         unit_of = unit_among(to_upper(label), times)
+      case default
+         unit_of = unit_among(to_upper(label), forces)
+      end select
+   end function unit_of
+
+   pure type(unit_type) function unit_among(label, units)
       character(*), intent(in) :: label
       type(unit_type), intent(in) :: units(:)
       integer :: i
 
-      unit_of = unit_type('', 0.0_dp)
+      unit_among = unit_type('', 0.0_dp)
       do i = 1, size(units)
-         if (index(' '//trim(units(i)%labels)//' ', ' '//label//' ') > 0) unit_of = units(i)
+         if (index(' '//trim(units(i)%labels)//' ', ' '//label//' ') > 0) unit_among = units(i)
       end do
-   end function unit_of
+   end function unit_among
 
    !> A label of a scale of temperature without the sign or the word for a degree.
    pure function scale_label(label) result(name)
