@@ -1,11 +1,12 @@
 !> *MATERIAL with *ELASTIC, *EXPANSION, *CONDUCTIVITY and *DENSITY; *SOLID SECTION, which gives
 !> elements their material, its axes and their thickness.
 module deck_builder_materials
-   use card_values, only: choice, take_parameter, check_ascending, check_unneeded, read_row
+   use card_values, only: choice, take_parameter, check_ascending, check_unneeded, &
+      decimal_comma, decimal_comma_words, read_row
+   use cards, only: data_card_type
    use deck_builder_equations, only: find_reference
    use deck_builder_material_laws, only: build_inelasticity, complete_law, build_melting
    use deck_context, only: deck_type
-   use deck_source, only: place_type
    use deck_structure, only: cards_of, has_stand_in
    use elasticity, only: couples_out_of_plane, is_positive_definite
    use element_kinds, only: axisymmetric, generalized_strain
@@ -154,20 +155,20 @@ contains
       do row = 1, size(property%temperature)
          if (.not. valid .and. property%symmetry /= isotropic) exit
          associate (data => deck%card%data(1 + (row - 1)*((size(property%names) - 1)/per_card + 1)))
-            call check_elasticity(data%place(merge(2, 1, property%symmetry == isotropic)), &
-               property, row, deck, valid)
+            call check_elasticity(data, property, row, deck, valid)
          end associate
       end do
    end subroutine build_elasticity
 
    !> Reports a row whose stiffness has no energy, or warps the plane.
-   subroutine check_elasticity(place, property, row, deck, valid)
-      type(place_type), intent(in) :: place
+   subroutine check_elasticity(data, property, row, deck, valid)
+      type(data_card_type), intent(in) :: data            ! the first card of the row
       type(property_type), intent(in) :: property
       integer, intent(in) :: row
       type(deck_type), intent(inout) :: deck
       logical, intent(inout) :: valid                     ! false where it does
       character(:), allocatable :: fault
+      integer :: comma
 
       associate (constants => property%values(:, row))
          if (property%symmetry == isotropic) then
@@ -182,7 +183,10 @@ contains
             return
          end if
       end associate
-      call deck%error(place, fault)
+      comma = decimal_comma(data)
+      if (comma > 0) fault = fault//'; or a '//decimal_comma_words(data%fields(comma)%text, &
+         data%fields(comma + 1)%text)
+      call deck%error(data%place(merge(2, 1, property%symmetry == isotropic)), fault)
       valid = .false.
    end subroutine check_elasticity
 
