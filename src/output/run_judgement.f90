@@ -1,6 +1,7 @@
 !> Warnings that only a whole run can give: contact that never closes, no load that acts, large
 !> strains and rotations, and the warnings of its increments by kinds.
 module run_judgement
+   use contact_definitions, only: is_removed
    use contact_points, only: contact_points_type
    use contact_system, only: contact_open
    use kinds, only: dp
@@ -88,6 +89,7 @@ contains
          self%moves = self%moves .or. &
             any(abs(fields%displacement) > unmoved*extent_of(model%mesh%coordinates))
          do i = 1, size(interfaces)
+            if (is_removed(model%steps(:record%step)%changes, i)) cycle
             self%closes(i) = self%closes(i) .or. any(record%contacts(i)%contact_state /= &
                contact_open)
             self%smallest_gap(i) = min(self%smallest_gap(i), minval(record%contacts(i)%gap))
@@ -132,8 +134,9 @@ contains
       type(model_type), intent(in) :: model
       type(contact_points_type), intent(in) :: interfaces(:) !! contact points of every interface
       type(string_type), allocatable :: lines(:)          !! one a warning
+      logical, allocatable :: never(:)
       real(dp) :: limit
-      integer :: i
+      integer :: i, s
 
       lines = self%repeated%lines()
       if (.not. allocated(self%closes)) return
@@ -159,12 +162,16 @@ contains
       if (any(solves_mechanics(model%steps%analysis))) then
          if (.not. self%moves) call append(lines, 'no load acts: all displacements are 0 in '// &
             'all increments')
+         ! One that is removed in all steps has no gap.
+         never = [(.not. (self%closes(i) .or. all([(is_removed(model%steps(:s)%changes, i) .or. &
+            .not. solves_mechanics(model%steps(s)%analysis), s=1, size(model%steps))])), &
+            i=1, size(interfaces))]
          do i = 1, size(interfaces)
-            if (self%closes(i) .or. count(.not. self%closes(:i)) > most_named) cycle
+            if (.not. never(i) .or. count(never(:i)) > most_named) cycle
             call append(lines, 'contact pair '//interfaces(i)%name// &
-               ' never closes: its smallest '//'gap is '//to_text(self%smallest_gap(i)))
+               ' never closes: its smallest gap is '//to_text(self%smallest_gap(i)))
          end do
-         associate (others => count(.not. self%closes) - most_named)
+         associate (others => count(never) - most_named)
             if (others > 0) call append(lines, counted(others, 'further contact pair')// &
                ' never '//trim(merge('closes', 'close ', others == 1))//'; their gaps are in '// &
                '/contact of the result file')

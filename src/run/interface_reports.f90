@@ -134,13 +134,12 @@ contains
       call warn(offset_warning(model%mesh, points))
       if (model%contacts(i)%has_clearance) then
          call warn(clearance_warning(model%mesh, points))
-      else
+      else if (.not. is_removed(model%steps(:min(1, size(model%steps)))%changes, i)) then
          call warn(overlap_warning(model%mesh, points))
          ! Where heat crosses the initial gaps before any mechanics.
          begins_with_heat = .false.
          if (size(model%steps) > 0) begins_with_heat = solves_heat(model%steps(1)%analysis) .and. &
-            .not. (solves_mechanics(model%steps(1)%analysis) .or. &
-            is_removed(model%steps(:1)%changes, i))
+            .not. solves_mechanics(model%steps(1)%analysis)
          if (begins_with_heat) then
             associate (law => model%interactions(model%contacts(i)%interaction)%law)
                call warn(unresolved_warning(model%mesh, points, law_at(law, largest_jump(law))))

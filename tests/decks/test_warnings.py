@@ -419,6 +419,21 @@ def test_contact_that_never_closes(tmp_path, gap, closes):
     assert found == ([] if closes else ["contact pair F never closes: its smallest gap is 0.1"])
 
 
+REMOVED, ADDED = ["*MODEL CHANGE, TYPE=CONTACT PAIR, REMOVE", "B.BOTTOM, A.TOP"], ["*MODEL CHANGE, TYPE=CONTACT PAIR, ADD",
+                                                                         "B.BOTTOM, A.TOP"]
+
+
+@pytest.mark.parametrize(("gap", "second", "told"), [(-0.1, [], None), (0.2, [], None), (0.2, ADDED, 0.2)])
+def test_a_pair_that_is_removed_neither_closes_nor_is_pressed_apart(tmp_path, gap, second, told):
+    """The upper block is pushed down by 0.1 while the pair is removed, and back again."""
+    steps = [["*STEP", "*STATIC", "1., 1.", "*BOUNDARY", f"B.TOP, 2, 2, {way!r}", *change, "*END STEP"]
+             for way, change in ((-0.1, REMOVED), (0.0, second))]
+    found = warnings_of_run(tmp_path, blocks(gap=gap), *steps)
+    assert found == ([f"contact pair F never closes: its smallest gap is {told!r}"] if told else [])
+    deck = tmp_path / "deck.inp"
+    assert "the faces overlap" not in run("check", deck).stderr
+
+
 def test_the_smallest_gap_is_one_of_an_increment(tmp_path):
     """Of bodies that touch and part, by 0.05 in the first of two increments."""
     lifted = ["*STEP", "*STATIC", "0.5, 1.", "*BOUNDARY", "B.TOP, 2, 2, 0.1", "*END STEP"]
