@@ -7,11 +7,14 @@ module verification
    use due_output, only: is_followed, is_judged
    use kinds, only: dp
    use materials, only: melts
-   use model, only: model_type, verify_type
+   use model, only: model_type, unit_labels_type, verify_type
    use no_estimates, only: mark_of, no_finer_value, no_reason, of_points, reason_inside_step
+   use quantity_types, only: find_quantity, quantity_type
    use records, only: increment_record_type
+   use reported_quantities, only: verifiable
    use state_tables, only: reals, state_table_type, words
-   use text, only: append, few_digits, percent, string_type, to_text
+   use text, only: append, few_digits, or_blank, percent, string_type, to_text
+   use unit_labels, only: unit_label
    implicit none
    private
    public :: verifier_type, outcome_type, failure_words, node_words, uncertainty_words
@@ -174,7 +177,7 @@ contains
    end function counts
 
    !> Adds a line for each value that is asked for and none expected, such as
-   !> `NT reaches 70 TOP: 0.2 +- 0.01`.
+   !> `NT reaches 70 TOP: 0.2 +- 0.01 (5 %) s`.
    subroutine add_asked(self, model, lines)
       class(verifier_type), intent(in) :: self
       type(model_type), intent(in) :: model
@@ -188,14 +191,37 @@ contains
             words = trim(check%title()//' '//check%where)
             if (.not. check%at_last) words = words//' at time '//to_text(check%when)
             if (outcome%reason == '') then
-               call append(lines, words//node_words(outcome)//': '//to_text(outcome%found)// &
-                  uncertainty_words(outcome))
+               words = words//node_words(outcome)//': '//to_text(outcome%found)// &
+                  uncertainty_words(outcome)
+               if (allocated(outcome%uncertainty)) then
+                  if (outcome%uncertainty < 10.0_dp*abs(outcome%found)) words = words//' ('// &
+                     percent(outcome%uncertainty/abs(outcome%found))//')'
+               end if
+               call append(lines, words//unit_words(check, model%units))
             else
                call append(lines, words//': '//outcome%reason)
             end if
          end associate
       end do
    end subroutine add_asked
+
+   !> The unit of the value of a check, with a blank before it; empty for none.
+   pure function unit_words(check, labels) result(words)
+      type(verify_type), intent(in) :: check
+      type(unit_labels_type), intent(in) :: labels
+      character(:), allocatable :: words
+      type(quantity_type) :: quantity
+
+      quantity = verifiable(find_quantity(verifiable, check%quantity))
+      if (allocated(check%level)) quantity%unit = 'time'
+      words = ''
+      if (quantity%unit == 'time') then
+         words = or_blank(labels%time)
+      else if (quantity%unit /= '-' .and. quantity%unit /= 'load') then
+         words = unit_label(quantity%unit, labels)
+      end if
+      if (words /= '') words = ' '//words
+   end function unit_words
 
    !> The message on a check that failed, such as `deck.inp:36: check failed: NT MID, node 11 at
    !> time 1: 3.6, expected 3.7 (off by 2.7027 %, allowed 1 %)`.

@@ -126,6 +126,20 @@ def test_the_time_at_which_a_block_has_cooled_is_within_its_uncertainty(tmp_path
     assert found["no_estimate"] == "path; ERRORS=FULL"
 
 
+@pytest.mark.parametrize(("labels", "units"), [
+    ("mm MPa W C s", (" s", " C", " W/mm^2")), ("mm MPa W C", ("", " C", " W/mm^2")), ("", ("", "", ""))])
+def test_a_value_that_is_asked_for_has_its_unit_and_how_far_it_may_be_off_in_percent(tmp_path, labels, units):
+    options = f'*OPTIONS, ERRORS=FULL, UNITS="{labels}"' if labels else "*OPTIONS, ERRORS=FULL"
+    deck = write(tmp_path / "deck.inp", [options, *WARM, "*VERIFY, KIND=NONE", "NT reaches 70., BLOCK.TOP, LAST",
+                                         "NT, MAX, 0.2", "HFL2, MIN, 0.2", "heat_imbalance, , LAST"])
+    lines = run("run", deck, "--out", tmp_path).stdout.splitlines()
+    told = [line.partition(": ")[2] for line in lines[-5:-1]]
+    assert told[0].startswith("0.2 (no estimate: ") and told[0].endswith(f"){units[0]}")
+    assert re.fullmatch(rf"70 \+- \S+ \(\S+ %\){units[1]}", told[1])
+    assert told[2].startswith("-200 (") and told[2].endswith(f"){units[2]}")
+    assert float(told[3]) < 1e-8   # a pure number
+
+
 def test_a_value_is_asked_for_without_an_expectation(tmp_path):
     """It has its uncertainty, and fails no run where it does not exist."""
     deck = write(tmp_path / "deck.inp", ["*OPTIONS, ERRORS=FULL", *WARM, "*VERIFY, KIND=NONE",
