@@ -323,7 +323,9 @@ contains
       type(reached_level_type), intent(inout) :: self
       real(dp), intent(in) :: values(:), time, uncertainty
       real(dp), intent(in) :: kinks(:)   ! values at which a course may bend within an increment
+      real(dp), parameter :: rounding = 1.0e-12_dp   ! part of the change in an increment
       real(dp) :: bend, slope
+      logical :: lands
       integer :: i
 
       if (.not. allocated(self%course)) allocate (self%course(6, size(values)), &
@@ -339,17 +341,19 @@ contains
                increment = 0.0_dp
             else
                slope = (values(i) - before)/(time - then)
+               ! As the gap of a point that closes at the end of the increment.
+               lands = abs(values(i) - self%level) <= rounding*abs(values(i) - before)
                if (ieee_is_nan(reached) .and. ((before < self%level .neqv. &
-                  values(i) < self%level) .or. abs(values(i) - self%level) <= 0.0_dp)) then
+                  values(i) < self%level) .or. lands)) then
                   reached = time
-                  if (abs(values(i) - self%level) > 0.0_dp) reached = then + &
-                     (self%level - before)/(values(i) - before)*(time - then)
+                  if (.not. lands) reached = then + (self%level - before)/(values(i) - before)* &
+                     (time - then)
                   ! Between its increments the course is a parabola rather than a line.
                   bend = abs(slope - earlier_slope)/(time - then + increment)*(reached - then)* &
                      (time - reached)
                   ! A value that is cut off there, as a solid fraction, may have come to it before.
-                  if (abs(values(i) - self%level) <= 0.0_dp .or. any((before < kinks) .neqv. &
-                     (values(i) < kinks))) bend = abs(slope)*(time - then)
+                  if (lands .or. any((before < kinks) .neqv. (values(i) < kinks))) bend = &
+                     abs(slope)*(time - then)
                   doubt = (uncertainty + bend)/abs(slope)
                end if
                earlier_slope = slope
@@ -373,7 +377,11 @@ contains
       uncertainty = ieee_value(1.0_dp, ieee_quiet_nan)
       if (size(values) == 1) uncertainty = self%course(2, 1)
       reason = ''
-      if (size(values) == 0 .or. any(ieee_is_nan(values))) reason = 'never reached'
+      associate (never => count(ieee_is_nan(values)))
+         if (size(values) == 0 .or. never > 0) reason = 'never reached'
+         if (never > 0 .and. never < size(values)) reason = reason//' by '//to_text(never)// &
+            ' of the '//to_text(size(values))//' values; MIN or MAX asks for a single one'
+      end associate
    end subroutine times
 
    !> The courses so far, in either direction; nothing where no card asks for one.
