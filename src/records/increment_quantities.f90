@@ -67,7 +67,7 @@ module increment_quantities
       quantity_type('ALLCD', of_history, 'stress length^3', needs_laws, &
       description='energy that creep dissipated so far'), &
       quantity_type('ALLFD', of_history, 'stress length^3', needs_friction, &
-      description='energy that friction dissipated so far'), &
+      description='energy that friction dissipated so far by slip in the plane'), &
       quantity_type('ALLWK', of_history, 'stress length^3', needs_laws, &
       description='work of loads, supports, temperatures and interferences so far'), &
       quantity_type('unstable_modes', of_history, '-', needs_stability, &
