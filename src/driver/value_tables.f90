@@ -112,6 +112,9 @@ contains
                'one out (names are case-insensitive)')
          else if (given%find(name) > 0) then
             call report%error(fields(i)%place, '--set gives '//name//', too; leave one out')
+         else if (known%find(name) == 0 .and. scan(name, ';'//achar(9)) > 0) then
+            call report%error(fields(i)%place, 'commas separate the fields of a table, not '// &
+               trim(merge('semicolons', 'tabs      ', index(name, ';') > 0)))
          else if (known%find(name) == 0) then
             call report%error(fields(i)%place, 'no *PARAMETER of '//deck//' has the name '// &
                name//nearest_known(to_upper(name), parameters))

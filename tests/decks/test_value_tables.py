@@ -95,6 +95,8 @@ def test_a_row_that_fails_leaves_the_others_alone(joint):
 
 @pytest.mark.parametrize(("table", "said"), [
     ("gap,hott\n1,2\n", ["1:5: error: no *PARAMETER of joint.inp has the name hott"]),
+    ("gap;hot\n1;2\n", ["1:1: error: commas separate the fields of a table, not semicolons"]),
+    ("gap\thot\n1\t2\n", ["1:1: error: commas separate the fields of a table, not tabs"]),
     ("gap,hot,GAP\n1,2,3\n", ["1:9: error: column GAP is there twice"]),
     ("gap,,hot\n1,2,3\n", ["1:5: error: column 2 has no name"]),
     ("gap,hot\n1\n2,\n,3\n", ["2:1: error: there is no value of hot in this row",
