@@ -361,6 +361,23 @@ def test_definitions_that_nothing_uses(tmp_path):
         "nothing uses the material SPARE"
 
 
+@pytest.mark.parametrize(("initial", "rows", "value", "told"), [
+    (20.0, "0., 0., 60., 1.", 500.0, True), (20.0, "0., 0.04, 60., 1.", 500.0, False),
+    (0.0, "0., 0., 60., 1.", 500.0, False), (20.0, "0., 0., 60., 1.", 0.0, False)])
+def test_an_amplitude_that_begins_far_from_the_initial_temperature(tmp_path, initial, rows, value, told):
+    cards = [*conducting([]), "*INITIAL CONDITIONS, TYPE=TEMPERATURE", f"A, {initial!r}"]
+    heated = ["*STEP", "*COUPLED TEMPERATURE-DISPLACEMENT, STEADY STATE", "1., 60.", "*BOUNDARY", "A.BOTTOM, 1, 2",
+              "*BOUNDARY, AMPLITUDE=WARM", f"A.TOP, 11, 11, {value!r}", "*END STEP"]
+    found = [(message, card) for message, card in warnings(tmp_path, ["*AMPLITUDE, NAME=WARM", rows], cards, heated)
+             if "jumps" in message]
+    if told:
+        assert one(found, "A.TOP") == (
+            "the temperature jumps from 20 to 0 as step 1 begins: factors of an amplitude multiply the value, and WARM begins "
+            "with 0; 4E-2 is the factor of 20")
+    else:
+        assert found == []
+
+
 def test_an_amplitude_that_ends_long_before_its_step(tmp_path):
     cards = ["*AMPLITUDE, NAME=RISE", "0., 0., 1., 1."]
     slow = [card.replace("1., 1.", "9., 900.") for card in HEATED]

@@ -1,6 +1,7 @@
 !> Slips that steps with heat show: contact without a law for its conductance, films on faces in
 !> contact, and coefficients of expansion in another unit than the temperatures.
 module heat_checks
+   use amplitudes, only: amplitude_value
    use conductance_laws, only: law_none
    use contact_definitions, only: is_removed
    use deck_context, only: deck_type
@@ -32,6 +33,7 @@ contains
       call check_expansion(deck)
       if (.not. any(solves_heat(deck%model%steps%analysis))) return
       call check_films(deck)
+      call check_jump(deck)
       do i = 1, size(deck%model%contacts)
          associate (contact => deck%model%contacts(i), interaction => &
             deck%model%interactions(deck%model%contacts(i)%interaction))
@@ -43,6 +45,33 @@ contains
          end associate
       end do
    end subroutine check_heat_paths
+
+   !> Warns of the first temperature that an amplitude takes from the initial one to 0 at once.
+   subroutine check_jump(deck)
+      type(deck_type), intent(inout) :: deck
+      real(dp) :: time
+      integer :: b, s
+
+      s = findloc(solves_heat(deck%model%steps%analysis), .true., dim=1)
+      do b = 1, size(deck%model%steps(s)%boundaries)
+         associate (given => deck%model%steps(s)%boundaries(b), requests => &
+            deck%boundaries%items(:deck%boundaries%count))
+            if (given%dof /= dof_temperature .or. given%amplitude == 0 .or. &
+               abs(given%value) <= 0.0_dp) cycle
+            associate (curve => deck%model%amplitudes(given%amplitude), &
+               initial => deck%model%initial_temperature(given%node))
+               time = merge(sum(deck%model%steps(:s - 1)%period), 0.0_dp, curve%total_time)
+               if (abs(amplitude_value(curve, time)) > 0.0_dp .or. abs(initial) <= 0.0_dp) cycle
+               call deck%warning(requests(findloc(requests%card, given%card, dim=1))%place, &
+                  'the temperature jumps from '//to_text(initial)//' to 0 as step '//to_text(s)// &
+                  ' begins: factors of an amplitude multiply the value, and '//curve%name// &
+                  ' begins with 0; '//to_text(initial/given%value)//' is the factor of '// &
+                  to_text(initial))
+               return
+            end associate
+         end associate
+      end do
+   end subroutine check_jump
 
    !> Warns of films on faces that touch the other surface of a contact pair; heat fluxes there may
    !> stand for friction. The mesh is not refined yet.
