@@ -114,8 +114,8 @@ contains
                deck%material_place(m), 'material '//material%name//' has no *ELASTIC, which a '// &
                'step with displacements needs', '*ELASTIC')
             ! Trusses do not conduct.
-            if (heat .and. any(deck%model%sections(pack(section, section > 0))%material == m) .and. &
-               .not. material%has(of_conductivity)) call deck%missing( &
+            if (heat .and. .not. material%has(of_conductivity) .and. any( &
+               deck%model%sections(pack(section, section > 0))%material == m)) call deck%missing( &
                deck%material_place(m), 'material '//material%name//' has no *CONDUCTIVITY, '// &
                'which a step with heat needs', '*CONDUCTIVITY')
             if (.not. (mechanics .and. material%has(of_elasticity))) cycle
