@@ -700,6 +700,18 @@ def test_a_traction_does_not_fall_to_zero_at_the_end_of_the_face(kept, result):
     assert [len(line.get_xdata()) for line in curves] == [21, 21], "the nodes and the line"
 
 
+def test_a_point_that_is_both_edges_of_contact_is_a_peak(kept, result):
+    with h5py.File(result, "r+") as file:
+        contact = file["contact/CYLINDER"]
+        s, alone = contact["s"][()], np.arange(len(contact["s"])) == 7
+        contact["status"][14], contact["pressure"][14] = alone, 50.0 * alone
+        contact["edges_contact"][14] = [s[7], s[7], np.nan, np.nan]
+        del contact["shear"]
+    (figure,) = kept("profiles", result)
+    (curve,) = [line for line in figure.axes[0].lines if len(line.get_xdata()) == 23]
+    assert curve.get_ydata()[6:11].tolist() == [0.0, 0.0, 50.0, 0.0, 0.0]
+
+
 def test_a_digitised_figure_has_a_legend_entry_for_each_of_its_curves(kept, result, tmp_path):
     figure = tmp_path / "fig3.csv"
     figure.write_text("load,edge_contact,edge_stick\n100,2.5,1\n900,7.5,4\n")

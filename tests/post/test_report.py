@@ -20,6 +20,7 @@ from synthetic import write_result  # noqa: E402
 
 from thercon.post import stresses  # noqa: E402
 from thercon.post.cli import main as plot  # noqa: E402
+from thercon.post.edge_curves import zeros_of  # noqa: E402
 from thercon.post.report.cli import main  # noqa: E402
 from thercon.post.fields import TITLES  # noqa: E402
 from thercon.post.report.data import histories, in_words, kept_steps  # noqa: E402
@@ -472,6 +473,36 @@ def test_friction_edges_and_histories_are_drawn_as_in_the_pictures(synthetic, br
     assert "friction \N{MINUS SIGN}\N{GREEK SMALL LETTER TAU}" in words
     assert "\N{PLUS-MINUS SIGN}" not in words
     assert browser.messages() == []
+
+
+def test_tractions_end_at_the_edges_as_in_the_pictures(synthetic, browser):
+    """Of a closed point between open ones, an edge, or both, may be at the point itself."""
+
+    def close_one(file):
+        contact = file["contact/CYLINDER"]
+        s, pressure, status = contact["s"][()], contact["pressure"][()], contact["status"][()]
+        pressure[:], status[:] = 0.0, 0
+        pressure[:, 7], status[:, 7] = 50.0, 1
+        contact["pressure"][...], contact["status"][...] = pressure, status
+        contact["edges_contact"][...] = [s[7], 0.5 * (s[7] + s[8]), np.nan, np.nan]
+        contact["edges_contact"][0] = [s[7], s[7], np.nan, np.nan]
+        del contact["shear"]
+
+    page = synthetic(close_one)
+    browser.open(page)
+    curve = "return document.querySelector('#tractions g path[stroke-width]').getAttribute('d')"
+    for key, row in (("end", 14), ("home", 0)):
+        browser.press("#load", key)
+        path = re.findall(r"([\d.]+) ([\d.]+)", browser.run(curve))
+        drawn = np.array(path, dtype=float)
+        with Result(page.with_suffix(".vtkhdf")) as result:
+            contact = result.contact("CYLINDER")
+            edges, before = zeros_of(contact, row, contact.pieces[0])
+            places = np.insert(contact["x"], before, contact.edge_on_axis(edges, contact["x"]))
+            heights = np.insert(contact["pressure"][row], before, 0.0)
+        inside = np.ptp(drawn[:, 0]) / np.ptp(places)
+        np.testing.assert_allclose(drawn[:, 0] - drawn[0, 0], (places - places[0]) * inside, atol=0.11)
+        np.testing.assert_array_equal(drawn[:, 1] < drawn[0, 1] - 1, heights > 0.0)
 
 
 def test_a_listing_of_another_deck_is_not_taken(cylinder, tmp_path):

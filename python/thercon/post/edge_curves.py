@@ -59,3 +59,16 @@ def is_one(old, new):
     below = old[0] <= new[1] and new[0] <= old[1]
     above = old[1] <= new[2] and new[1] <= old[2]
     return old[3] == new[3] and below and above
+
+
+def zeros_of(contact, row, piece):
+    """Return edges of contact inside a piece, where tractions fall to zero, and the numbers of its
+    points before which each falls: at a contact point that is an edge, on the open side of it; of
+    one that is both edges, on either side."""
+    s, status = contact["s"][piece], contact["status"][row, piece]
+    edges = contact["edges_contact"][row]
+    edges = edges[(edges > s[0]) & (edges < s[-1])]  # no fall to zero at the face's end
+    after = np.searchsorted(s, edges, side="right")
+    begins = (status[after - 2] == OPEN) & (np.diff(edges, prepend=s[0]) > 0.0)
+    return edges, after - ((s[after - 1] == edges) & begins)
+

@@ -3,10 +3,11 @@
 import numpy as np
 
 from . import profile_legends, style
+from .edge_curves import zeros_of
 from .overlay import axis_words, file_parts, read_overlays
 from .profile_legends import EDGES, QUANTITY_LINES, SECOND
 from .errors import UserError, nearest_name
-from .result import OPEN, UNJUDGED
+from .result import UNJUDGED
 from .style import plt
 from .tables import stack_tables
 
@@ -205,15 +206,10 @@ class Picture:
         return [] if self.contact.parts else edges[is_inside]
 
     def with_edges(self, row, piece, values):
-        """Return places and values of a piece with zeros at the edges of contact inside it; at a
-        contact point that is an edge, on its open side."""
-        s, status = self.contact["s"][piece], self.contact["status"][row, piece]
-        edges = self.contact["edges_contact"][row]
-        edges = edges[(edges > s[0]) & (edges < s[-1])]  # no fall to zero at the face's end
-        after = np.searchsorted(s, edges, side="right")
-        after -= (s[after - 1] == edges) & (status[after - 2] == OPEN)
+        """Return places and values of a piece with zeros at the edges of contact inside it."""
+        edges, before = zeros_of(self.contact, row, piece)
         on_axis = self.contact.edge_on_axis(edges, self.at(row))
-        return np.insert(self.at(row)[piece], after, on_axis), np.insert(values, after, 0.0)
+        return np.insert(self.at(row)[piece], before, on_axis), np.insert(values, before, 0.0)
 
     def edges(self, key, row):
         """Return the sharpened edges of a kind at one load, on the axis of the picture."""

@@ -5,7 +5,7 @@ import base64
 import numpy as np
 
 from .. import branch, mesh
-from ..edge_curves import edge_curves
+from ..edge_curves import edge_curves, zeros_of
 from ..field_colours import PRINCIPAL, SIGNED
 from ..cells import CORNERS
 from ..fields import USUAL, apart_words, title_of, touches_after_a_gap
@@ -110,6 +110,7 @@ def contact_data(result, contact):
             key: packed(contact.edge_on_axis(contact[f"edges_{key}"], coordinate))
             for key in ("contact", "stick")
         },
+        "zeros": counted(zeros(contact)),
         "curves": {
             key: [packed(values) for values in joined(contact, key, coordinate)]
             for key in ("contact", "stick")
@@ -127,6 +128,18 @@ def joined(contact, key, coordinate):
     curves = [np.append(curve, [[np.nan], [np.nan]], axis=1) for curve in edge_curves(contact, key)]
     rows, places = np.hstack([np.zeros((2, 0)), *curves])
     return rows, contact.edge_on_axis(places, coordinate)
+
+
+def zeros(contact):
+    """Return the contact points before which tractions fall to zero at the edges of contact of each
+    increment; -1 where they do not."""
+    found = np.full(contact["edges_contact"].shape, -1)
+    pieces = contact.pieces
+    for row, edges in enumerate(contact["edges_contact"]):
+        for piece in pieces:
+            own, before = zeros_of(contact, row, piece)
+            found[row, np.isin(edges, own)] = piece.start + before
+    return found
 
 
 def is_told(result, contact, key, coordinate, window):

@@ -153,7 +153,7 @@ function tellLoad() {
 
 // ---- contact ----
 const contacts = data.contacts.map(each => {
-   const decoded = {...each, at: floats(each.at), status: bytes(each.status), profiles: {}, edges: {}, curves: {}, main: {}};
+   const decoded = {...each, at: floats(each.at), status: bytes(each.status), zeros: integers(each.zeros), profiles: {}, edges: {}, curves: {}, main: {}};
    for (const key in each.profiles) decoded.profiles[key] = floats(each.profiles[key]);
    for (const key in each.edges) decoded.edges[key] = floats(each.edges[key]);
    for (const key in each.curves) decoded.curves[key] = each.curves[key].map(floats);
@@ -213,9 +213,11 @@ function profile(id, title, quantities, label, zero, caption) {
       for (const [first, last] of c.pieces) {
          const piece = values.slice(first, last + 1).map((v, i) => [c.at[first + i], v, false]);
          // Tractions end where the contact does.
-         if (zero) for (const e of finite(rowOf(c.edges.contact, 4)))
-            if (e > c.at[first] && e < c.at[last]) piece.push([e, 0, true]);
-         points.push(...piece.sort((a, b) => a[0] - b[0]), [NaN, NaN, true]);
+         if (zero) for (let k = 3; k >= 0; k--) {
+            const before = c.zeros[4 * row + k];
+            if (before > first && before <= last) piece.splice(before - first, 0, [c.edges.contact[4 * row + k], 0, true]);
+         }
+         points.push(...piece, [NaN, NaN, true]);
       }
       lines.push({x: points.map(p => p[0]), y: points.map(p => p[1]), plain: points.map(p => p[2]),
          colour, dash, name, mark: !dash, hollow: key === 'shear'});
