@@ -405,9 +405,7 @@ class Result:
         """
         import pandas
 
-        attributes = self._file.file["run"].attrs
-        count = attributes.get("verify_passed", 0) + attributes.get("verify_failed", 0)
-        rows = self.document.get("checks") or (checks_of_listing(self._file) if count else [])
+        rows = self.document.get("checks") or (checks_of_listing(self._file) if self._file.verify_cards else [])
         return pandas.DataFrame(rows)
 
     @property
@@ -421,8 +419,8 @@ def checks_of_listing(file):
     path = file.path.with_suffix(".lst")
     listing = read_listing(path, file.deck)
     if listing is None:
-        raise UserError(f"{file.path}: its checks are in its listing, and {path} is missing or of "
-                        "another deck")
+        raise UserError(f"{file.path}: its checks are in its listing, and {path} is missing, "
+                        "incomplete or of another deck")
     last = file.history["time"][-1]
     return [{"quantity": each.quantity, "where": each.where,
              **({"expected": float(each.expected), "tolerance": float(each.allowed),
@@ -431,7 +429,10 @@ def checks_of_listing(file):
              "passed": each.verdict == "PASS" or each.kind == "NONE" and not each.failed.startswith("the run"),
              **({"reason": each.failed} if each.found == "-" else
                 {"time": last if each.time == "LAST" else float(each.time), "found": float(each.found)}),
-             **({"deviation": float(each.deviation)} if each.deviation != "-" else {})}
+             **({"deviation": float(each.deviation)} if each.deviation != "-" else {}),
+             **({"node": int(each.node)} if each.node else {}),
+             **({"uncertainty": float(each.uncertainty)} if each.uncertainty else {}),
+             **({} if each.no_estimate is None else {"no_estimate": each.no_estimate})}
             for each in listing.checks]
 
 

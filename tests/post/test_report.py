@@ -868,14 +868,26 @@ def test_energies_and_times_have_the_units_of_the_deck(synthetic):
 def test_a_card_without_an_expectation_is_no_check_but_its_value_is_shown(tmp_path):
     deck = write_deck(tmp_path / "cylinder.inp")
     cards = deck.read_text().replace("\n20., 900.", "\n450., 900.").split("\n*VERIFY", 1)[0]
-    deck.write_text(f"{cards}\n*Verify, KIND=NONE\nNT, TOP, LAST\n")
+    deck.write_text(f"{cards}\n*Verify, KIND=NONE\nNT, TOP, LAST\nMISES, MAX, LAST\n"
+                    "heat_in, , LAST\nNT reaches 500., BASE, LAST\n")
     assert run(deck)[0] == 0
     assert main([str(deck.with_suffix(".vtkhdf")), "--out", str(tmp_path)]) == 0
     page = (tmp_path / "cylinder.html").read_text()
-    assert "<dt>checks</dt><dd>none with an expectation</dd>" in page
-    assert "<p>None with an expectation.</p>" in page and 'class="pass"' not in page
-    row = re.search(r'<th scope="row"[^>]*>(?:(?!<tr>).)*?>NT<.*?</tr>', page)[0]
-    assert ">9.0000000E+02<" in row
+    assert "<dt>checks</dt><dd>none: KIND=NONE asks for values alone</dd>" in page
+    assert "<p>None: KIND=NONE asks for values alone.</p>" in page and 'class="pass"' not in page
+    table = page[page.index("<caption>*VERIFY"):].split("</table>")[0]
+    heads = re.findall(r'<th scope="col"[^>]*>(.*?)</th>', table)
+    rows = [dict(zip(heads, re.findall(r"<t[hd][^>]*>(.*?)</t[hd]>", row)))
+            for row in re.findall("<tr>(.*?)</tr>", table)[1:]]
+    assert heads == ["card", "quantity", "where", "time", "found", "uncertainty (95 %)", "unit",
+                     "verdict", "kind and source"]
+    assert [[row[key] for key in ("quantity", "found", "unit", "verdict")] for row in rows] == [
+        ["NT", "9.0000000E+02", "°C", "–"], ["MISES", rows[1]["found"], "MPa", "–"],
+        ["heat_in", rows[2]["found"], "W", "–"], ["NT reaches 500", "–", "", "– never reached"]]
+    assert re.fullmatch(r"TOP \(node \d+\)", rows[0]["where"]) and rows[1]["where"] == "MAX"
+    known = [row["uncertainty (95 %)"] for row in rows]
+    assert known[0] == known[2] == "no estimate: needs ERRORS=FULL"
+    assert known[1].startswith("± ") and known[3] == ""
 
 
 def test_results_of_earlier_versions_have_their_uncertainties(uncertain, tmp_path):

@@ -121,6 +121,19 @@ def test_a_failed_check_is_no_exception(joint):
         opened.checks
 
 
+def test_values_that_nothing_is_expected_of_are_checks_of_an_open_result_too(joint):
+    joint.write_text(joint.read_text() + "*VERIFY, KIND=NONE\nNT, 8, LAST\nheat_rate, JOINT, LAST\n"
+                     "MISES, MAX, LAST\nNT reaches 100., 8, LAST\n")
+    result = thercon.run("joint.inp")
+    assert {"uncertainty", "no_estimate"} < set(result.checks)
+    opened = thercon.open("joint").checks
+    assert sorted(opened) == sorted(set(result.checks) - {"address"})
+    for name in opened:
+        one, other = (each[name] for each in (opened, result.checks))
+        assert list(one) == pytest.approx(list(other), rel=0.06, abs=1e-9, nan_ok=True) \
+            if one.dtype.kind in "fi" else one.fillna("").equals(other.fillna("")), name
+
+
 def test_an_exception_has_the_messages_with_their_places(joint):
     lines = joint.read_text().splitlines()
     at = lines.index("*FRICTION")

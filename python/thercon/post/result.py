@@ -468,6 +468,11 @@ class Result:
         return [text(card) for card in self.file["deck"][()]] if "deck" in self.file else []
 
     @cached_property
+    def verify_cards(self):
+        """The cards *VERIFY of the deck."""
+        return [card.upper() for card in self.deck if card.upper().startswith("*VERIFY")]
+
+    @cached_property
     def is_axisymmetric(self):
         """Whether the model is axisymmetric."""
         return stresses.is_axisymmetric(self.deck)

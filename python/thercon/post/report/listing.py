@@ -8,7 +8,8 @@ from itertools import takewhile
 CHECK = re.compile(
     r"^ *(\d+)  (.{10}) (.{24,}?) (.{16})(.{11})(.{15})(.{15})(.{10})(.{10}) (REL|ABS) +(PASS|FAIL|-)$"
 )
-REMARK = re.compile(r"^ {8}(source|failed|no value): (.*)$")
+REMARK = re.compile(r"^ {8}(source|failed|no value|found): +(.*)$")
+FOUND = re.compile(r"\S+(?: \+- ([^\s,]+)| \(no estimate(?:: (.*?))?\))?(?:, node (\d+))?$")
 ITEM = re.compile(r"^   - (.*)$")
 ANALYSIS = re.compile(r"^   stability: (\w+)")
 POINTER = re.compile(r"(;[^;]*)?, (?:or )?see ENDED EARLY.*$")
@@ -31,6 +32,9 @@ class Check:
     verdict: str
     source: str = ""
     failed: str = ""  # why, or why there is no value
+    uncertainty: str = ""
+    no_estimate: str | None = None  # why there is none, if that is told
+    node: str = ""  # of a set
 
 
 @dataclass
@@ -66,13 +70,20 @@ def read_listing(path, cards):
         if check:
             found.checks.append(Check(*(part.strip() for part in check.groups())))
         elif remark and found.checks:
-            name, words = remark.groups()
-            setattr(found.checks[-1], "source" if name == "source" else "failed", words)
+            add_remark(found.checks[-1], *remark.groups())
     found.warnings = items(section(lines, "WARNINGS"))
     found.stability = analyses(lines)
     # The table of rounds is set off from the targets.
     found.accuracy = items(takewhile(str.strip, section(lines, "REQUESTED ACCURACY")))
     return found
+
+
+def add_remark(check, name, words):
+    """Add to a check what a line below it says."""
+    if name != "found":
+        setattr(check, "source" if name == "source" else "failed", words)
+    elif told := FOUND.match(words):
+        check.uncertainty, check.no_estimate, check.node = told[1] or "", told[2], told[3] or ""
 
 
 def analyses(lines):

@@ -4,6 +4,7 @@ import re
 
 import numpy as np
 
+from ..comparison.from_result import FIELDS
 from ..result import ANALYSIS, NO_ANALYSIS, NO_FINER_VALUE, text, words_of
 from ..units import unit_of
 from .data import contacts_of, friction_heat, plain, told_totals
@@ -65,12 +66,14 @@ def facts(result, listing):
 
 
 def counts_of_checks(result):
-    """Return how many *VERIFY checks passed and failed; cards of KIND=NONE do neither."""
+    """Return how many *VERIFY checks passed and failed; values of KIND=NONE do neither."""
     run = result.file["run"].attrs
     passed, failed = (int(run.get(f"verify_{key}", 0)) for key in ("passed", "failed"))
-    has_cards = any(card.upper().startswith("*VERIFY") for card in result.deck)
-    without = "none with an expectation" if has_cards else "none"
-    return f"{passed} passed, {failed} failed" if passed + failed else without
+    if passed + failed:
+        return f"{passed} passed, {failed} failed"
+    is_judging = [not re.search(r"\bKIND *= *NONE\b", card) for card in result.verify_cards]
+    without = "none judged" if any(is_judging) else "none: KIND=NONE asks for values alone"
+    return without if is_judging else "none"
 
 
 def last_load(result):
@@ -270,19 +273,41 @@ def checks(result, listing):
     if not listing.checks:  # the listing is that of a later round, or of a run that was broken off
         earlier = html("<p>They were judged in round 1, on the deck as written.</p>")
         return joined([told, earlier if result.accuracy else ""])
-    head = ["card", "quantity", "where", "time", "expected", "found", "deviation", "allowed",
-            "verdict", "kind and source"]
+    head = ["card", "quantity", "where", "time", "expected", "found", "uncertainty (95 %)", "unit",
+            "deviation", "allowed", "verdict", "kind and source"]
     rows = []
     for check in sorted(listing.checks, key=lambda each: each.verdict != "FAIL"):
         source = f"{check.kind}: {check.source}" if check.source else check.kind
         said = check.verdict.replace("-", "–")  # those of KIND=NONE pass in listings of earlier versions
         said = "–" if (check.kind, said) == ("NONE", "PASS") else said
-        verdict = html('<span class="{}">{}</span>{}', said.lower(), said,
-                       f" {check.failed}" if check.failed else "")
-        words = (check.card, check.quantity, check.where, check.time, check.expected, check.found,
-                 check.deviation, f"{check.allowed} {check.measure}")
-        rows.append([*words, verdict, source])
-    return joined([told, table("*VERIFY checks, failed ones first", head, rows, (3, 4, 5, 6, 7))])
+        verdict = f"– {check.failed}".rstrip() if said == "–" else html(
+            '<span class="{}">{}</span> {}', said.lower(), said, check.failed)
+        known = f"± {check.uncertainty}" if check.uncertainty else ""
+        known = known if check.no_estimate is None else no_estimate(check.no_estimate)
+        where = f"{check.where} (node {check.node})" if check.node else check.where
+        allowed = check.allowed if check.allowed == "-" else f"{check.allowed} {check.measure}"
+        cells = (check.card, check.quantity, where, check.time, check.expected, check.found, known,
+                 unit_of_check(result, check.quantity), check.deviation, allowed, verdict, source)
+        rows.append(["–" if cell == "-" else cell for cell in cells])
+    numbers = {"time", "expected", "found", "uncertainty (95 %)", "deviation", "allowed"}
+    told_columns = [k for k in range(len(head)) if any(row[k] not in ("", "–") for row in rows)]
+    head = [head[k] for k in told_columns]
+    return joined([told, table("*VERIFY checks, failed ones first", head,
+                               [[row[k] for k in told_columns] for row in rows],
+                               [k for k, name in enumerate(head) if name in numbers])])
+
+
+def unit_of_check(result, quantity):
+    """Return the unit of a quantity of *VERIFY; nothing where it has none, or none that the file tells."""
+    if " reaches " in quantity:
+        return result.units.names.get("time", "")
+    name, _ = FIELDS.get(quantity.upper(), (quantity, None))
+    contacts = (result.file["contact"][contact] for contact in result.contact_names)
+    for group in (result.file["history"], *contacts, result.file.get("VTKHDF/PointData", {})):
+        if name in group:
+            return unit_of(text(group[name].attrs.get("unit", "")))
+    return plain(result.units.names.get({"RFL": "power"}.get(quantity, "force"), "")) \
+        if re.match("RF[123L]$", quantity) else ""
 
 
 def warnings(result, listing):
