@@ -674,7 +674,9 @@ contains
       if (allocated(self%solver)) full_flops = self%solver%full_flops
       if (.not. allocated(self%pieces%piece)) return
       do i = 1, size(self%pieces%piece)
-         full_flops = full_flops + self%pieces%piece(i)%solver%full_flops
+         associate (piece => self%pieces%piece(i))
+            if (allocated(piece%solver)) full_flops = full_flops + piece%solver%full_flops
+         end associate
       end do
    end function full_flops
 
