@@ -36,7 +36,7 @@ def gather(settings):
     """Return the rows of the table."""
     stem = Path(settings["deck"]).stem
     with open(settings["values"], newline="") as file:
-        rows = list(csv.DictReader(file))
+        rows = [{"run": str(n)} | row for n, row in enumerate(csv.DictReader(file), 1)]
     for row in rows:
         folder = Path("runs") / row["run"]
         row["outcome"], row["reason"] = outcome(folder)
@@ -47,6 +47,8 @@ def gather(settings):
             continue
         with h5py.File(result) as file:
             for name, dataset in settings["quantities"].items():
+                if dataset not in file:
+                    sys.exit(f"sweep.toml: {result} has no dataset {dataset} for {name}")
                 row[name] = repr(float(np.max(file[dataset][-1])))
     return rows
 

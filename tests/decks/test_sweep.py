@@ -118,6 +118,27 @@ def test_runs_one_of_them_failing_and_a_second_start(tmp_path):
         assert_closed_form(row)
 
 
+@pytest.mark.parametrize(("dataset", "told"), [("contact/FACE/heat_rate", None), ("contact/FACE/heat", "has no dataset contact/FACE/heat")])
+def test_rows_without_names_are_numbered_and_a_wrong_quantity_is_told(tmp_path, dataset, told):
+    folder = tmp_path / "sweep"
+    workflow(folder)
+    (folder / "values.csv").write_text("gap,hot\n5.0E-05,100.\n5.0E-04,200.\n")
+    settings = folder / "sweep.toml"
+    settings.write_text(settings.read_text().replace('"contact/FACE/heat_rate"', f'"{dataset}"'))
+    for run, row in enumerate((("5.0E-05", "100."), ("5.0E-04", "200.")), 1):
+        subprocess.run([PROGRAM, "run", "joint.inp", "--set", f"gap={row[0]}", "--set", f"hot={row[1]}", "--quiet", "--jobs", "1",
+                        "--out", f"runs/{run}"], cwd=folder, check=True)
+    process = subprocess.run([sys.executable, "gather.py"], cwd=folder, capture_output=True, text=True, check=False)
+    if told:
+        assert process.returncode == 1
+        assert told in process.stderr and process.stderr.count("\n") == 1
+    else:
+        assert process.returncode == 0, process.stderr
+        assert list(gathered(folder)) == ["1", "2"]
+        for row in gathered(folder).values():
+            assert_closed_form(row)
+
+
 @pytest.mark.parametrize("name", ["sweep.csv", "values.csv"])
 def test_the_values_are_not_written_over(tmp_path, name):
     folder = tmp_path / "sweep"
