@@ -193,8 +193,6 @@ contains
          self%melting%acts)
       if (goes_on .and. allocated(bodies%operators_at)) goes_on = &
          bodies%has_operators_of(before%operators_at, before%tangent)
-      if (allocated(before%corrections_before)) goes_on = goes_on .and. stage%size <= most_ahead* &
-         before%increment_size
       if (takes_past .or. .not. goes_on) self%heat_before = self%heat_beyond(model, bodies, &
          before%temperature)
       if (.not. goes_on) then
@@ -204,11 +202,15 @@ contains
          self%values = corrections_of(self, model, bodies, before%temperature, displacement)
       else
          self%values = before%corrections
-         associate (n => size(before%temperature))
+         associate (n => size(before%temperature), ahead => stage%size/before%increment_size)
             if (.not. takes_past) self%heat_before = self%values(n + 1:2*n)
+            if (ahead > most_ahead) then
+               ! What a far shorter increment took up may be a jump: no rate of this one.
+               self%values(:n) = self%values(:n)/ahead
+            else if (allocated(before%corrections_before)) then
+               self%values = self%values + ahead*(before%corrections - before%corrections_before)
+            end if
          end associate
-         if (allocated(before%corrections_before)) self%values = self%values + stage%size/ &
-            before%increment_size*(before%corrections - before%corrections_before)
       end if
    end subroutine begin
 
