@@ -106,8 +106,8 @@ contains
       k = minloc(points%initial_gap, dim=1)
       warning = 'contact pair '//points%name//': the faces overlap by '// &
          to_text(-points%initial_gap(k))//' at '//nodes_of(mesh, points, k)// &
-         ', where the element edge is '//to_text(points%edge(k))//'; they are pressed apart in '// &
-         'the first increment: check the positions of the bodies'
+         ', where the element edge is '//to_text(points%edge(k))//'; they are pressed apart as '// &
+         'soon as the pair acts: check the positions of the bodies'
       if (.not. points%follows_sliding) warning = warning//', or give the overlap by *CLEARANCE'
    end function overlap_warning
 

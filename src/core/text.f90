@@ -6,9 +6,9 @@ module text
    implicit none
    private
    public :: named_type, string_type, others, counted, listed, to_text, all_digits, few_digits, &
-      rounded, digits_above, with_decimals, or_blank, percent, quoted, to_upper, without_blanks, &
-      is_same_name, read_integer, read_real, append, is_whole, integer_fault, real_fault, &
-      smallest_magnitude, largest_magnitude, split_words
+      rounded, digits_above, with_decimals, or_blank, percent, share_words, quoted, to_upper, &
+      without_blanks, is_same_name, read_integer, read_real, append, is_whole, integer_fault, &
+      real_fault, smallest_magnitude, largest_magnitude, split_words
 
    integer, parameter :: largest_exponent = 300   !! beyond it reading could overflow
    !> Magnitudes of numbers that are not 0: products of three of them stay finite.
@@ -152,6 +152,15 @@ contains
 
       string = few_digits(100.0_dp*part, digits)//' %'
    end function percent
+
+   !> How large a part of a value its uncertainty is; empty where the value is small beside it.
+   pure function share_words(uncertainty, value) result(words)
+      real(dp), intent(in) :: uncertainty, value
+      character(:), allocatable :: words        !! such as (5 %)
+
+      words = ''
+      if (uncertainty < 10.0_dp*abs(value)) words = '('//percent(uncertainty/abs(value))//')'
+   end function share_words
 
    !> A number with a fixed number of decimals.
    pure function with_decimals(number, decimals) result(string)

@@ -11,7 +11,7 @@ module contact_definitions
    private
    public :: interaction_type, contact_definition_type, tie_definition_type
    public :: friction_change_type, pair_change_type, interference_type, contact_changes_type
-   public :: latest_friction, is_removed, brings_friction, makes_friction_heat
+   public :: latest_friction, is_removed, steps_with, brings_friction, makes_friction_heat
    public :: pairing_by_faces, pairing_nodes, pairing_surfaces, pairing_name
 
    integer, parameter :: pairing_by_faces = 0    !! nodes where the faces match, else surfaces
@@ -150,5 +150,17 @@ contains
          end do
       end do
    end function is_removed
+
+   !> The steps in which an interface is not removed.
+   pure function steps_with(changes, contact) result(acts)
+      type(contact_changes_type), intent(in) :: changes(:)   !! (steps)
+      integer, intent(in) :: contact                         !! index into model%contacts
+      logical :: acts(size(changes))                         !! (steps)
+      integer :: s
+
+      do s = 1, size(changes)
+         acts(s) = .not. is_removed(changes(:s), contact)
+      end do
+   end function steps_with
 
 end module contact_definitions

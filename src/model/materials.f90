@@ -12,10 +12,10 @@ module materials
    public :: material_type, properties_type, section_type, property_type, orientation_type, &
       material_axes, strain_rotation, heat_capacity, least_heat_capacity, set_property, &
       elasticity_of, isotropic, engineering, orthotropic, anisotropic, follows_temperature, &
-      has_law, reference_nodes, strain_freedoms, varies, thermal_strain, heat_content, &
-      heat_capacity_at, expansion_heat, set_latent_heat, melts, melting_row, latent_content, &
-      solid_fraction, melted_to, property_keywords, of_elasticity, of_expansion, of_conductivity, &
-      of_density, of_specific_heat
+      has_law, heats_by_work, reference_nodes, strain_freedoms, varies, thermal_strain, &
+      heat_content, heat_capacity_at, expansion_heat, set_latent_heat, melts, melting_row, &
+      latent_content, solid_fraction, melted_to, property_keywords, of_elasticity, of_expansion, &
+      of_conductivity, of_density, of_specific_heat
 
    ! What a property is.
    integer, parameter :: of_elasticity = 1, of_expansion = 2, of_conductivity = 3, of_density = 4, &
@@ -163,6 +163,13 @@ contains
 
       has_law = associated(material%law%respond)
    end function has_law
+
+   !> Whether plastic work or creep heats it.
+   elemental logical function heats_by_work(material)
+      type(material_type), intent(in) :: material
+
+      heats_by_work = material%law%heat_fraction > 0.0_dp
+   end function heats_by_work
 
    !> Whether heat and stress are more than constants times temperatures and displacements.
    elemental logical function varies(material)

@@ -16,7 +16,7 @@ module results
    use file_calls, only: identity_of, remove_file, rename_file, try_file
    use growing_datasets, only: bytes_in, flush_sets, write_integers
    use history_results, only: history_results_type
-   use materials, only: melts, of_expansion, reference_nodes
+   use materials, only: heats_by_work, melts, of_expansion, reference_nodes
    use increment_quantities, only: history_estimated
    use result_tables, only: result_table_type, with_uncertainty, write_geometry, &
       write_rigid_surfaces
@@ -375,7 +375,7 @@ contains
          has(needs_mechanics) = any(solves_mechanics(analysis))
          has(needs_storage) = any(model%steps%is_transient)
          has(needs_dilatation) = any(model%steps%dilates .or. model%steps%is_transient .and. &
-            any(model%materials%law%heat_fraction > 0.0_dp))
+            any(heats_by_work(model%materials)))
          has(needs_stability) = any(model%steps%stability_frequency > 0)
          has(needs_branch) = any(model%steps%continuation%is_on)
          has(needs_sections) = has(needs_mechanics) .and. size(section_nodes(model%couplings)) > 0

@@ -1,7 +1,7 @@
 !> Warnings that only a whole run can give: contact that never closes, no load that acts, large
 !> strains and rotations, and the warnings of its increments by kinds.
 module run_judgement
-   use contact_definitions, only: is_removed
+   use contact_definitions, only: is_removed, steps_with
    use contact_points, only: contact_points_type
    use contact_system, only: contact_open
    use kinds, only: dp
@@ -136,7 +136,7 @@ contains
       type(string_type), allocatable :: lines(:)          !! one a warning
       logical, allocatable :: never(:)
       real(dp) :: limit
-      integer :: i, s
+      integer :: i
 
       lines = self%repeated%lines()
       if (.not. allocated(self%closes)) return
@@ -163,9 +163,8 @@ contains
          if (.not. self%moves) call append(lines, 'no load acts: all displacements are 0 in '// &
             'all increments')
          ! One that is removed in all steps has no gap.
-         never = [(.not. (self%closes(i) .or. all([(is_removed(model%steps(:s)%changes, i) .or. &
-            .not. solves_mechanics(model%steps(s)%analysis), s=1, size(model%steps))])), &
-            i=1, size(interfaces))]
+         never = [(.not. self%closes(i) .and. any(steps_with(model%steps%changes, i) .and. &
+            solves_mechanics(model%steps%analysis)), i=1, size(interfaces))]
          do i = 1, size(interfaces)
             if (.not. never(i) .or. count(never(:i)) > most_named) cycle
             call append(lines, 'contact pair '//interfaces(i)%name// &

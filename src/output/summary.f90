@@ -21,7 +21,7 @@ module summary
    use records, only: body_uncertainty_type, contact_record_type, increment_outcome_type, &
       increment_record_type, uncertainty_type
    use steps, only: solves_heat
-   use text, only: append, few_digits, listed, or_blank, percent, string_type, to_text
+   use text, only: append, few_digits, listed, or_blank, share_words, string_type, to_text
    use unit_labels, only: unit_label
    implicit none
    private
@@ -63,7 +63,7 @@ module summary
       real(dp), allocatable :: heat(:)                        !! by heat_quantities
       !> The largest magnitude of a displacement [length]
       real(dp), allocatable :: displacement
-      integer, private :: molten_node = 0                     !! with the least fraction; 0: solid
+      integer, private :: least_solid_node = 0                !! 0 where all is solid
       real(dp), private :: least_solid = 1.0_dp               !! its solid fraction [-]
       character(:), allocatable, private :: cycle             !! what the last cycle did, or none
       character(:), allocatable, private :: many_increments   !! why a step had so many, or nothing
@@ -116,7 +116,8 @@ contains
          if (allocated(fields%stress)) self%displacement = maxval(norm2(fields%displacement, &
             dim=1), mask=counts)
          if (allocated(fields%solid_fraction)) then
-            self%molten_node = minloc(fields%solid_fraction, dim=1, mask=fields%solid_fraction < 1)
+            self%least_solid_node = minloc(fields%solid_fraction, dim=1, &
+               mask=fields%solid_fraction < 1)
             self%least_solid = minval(fields%solid_fraction)
          end if
       end associate
@@ -225,8 +226,8 @@ contains
       if (allocated(self%last%solid_time)) call append(lines, summary_line('all solid at', &
          self%last%solid_time(1), history_words(self, model, 'solid_time'), or_blank( &
          model%units%time), ''))
-      if (self%molten_node > 0) call append(lines, summary_line('solid fraction', &
-         self%least_solid, '', '-', 'least at '//place_words(model%mesh, self%molten_node)))
+      if (self%least_solid_node > 0) call append(lines, summary_line('solid fraction', &
+         self%least_solid, '', '-', 'least at '//place_words(model%mesh, self%least_solid_node)))
       if (allocated(self%cycle)) call append(lines, self%cycle)
       if (allocated(self%many_increments)) call append(lines, self%many_increments)
       if (self%printed > many_rows) call append(lines, to_text(self%printed)//' rows of *NODE '// &
@@ -609,8 +610,7 @@ contains
          return
       end if
       number = few_digits(total)
-      column = ' +- '//number
-      if (total < 10.0_dp*abs(value)) column = ' +- '//number//'('//percent(total/abs(value))//')'
+      column = ' +- '//number//share_words(total, value)
       words = column
    end function words_within
 

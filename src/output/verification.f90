@@ -13,7 +13,7 @@ module verification
    use records, only: increment_record_type
    use reported_quantities, only: verifiable
    use state_tables, only: reals, state_table_type, words
-   use text, only: append, few_digits, or_blank, percent, string_type, to_text
+   use text, only: append, few_digits, or_blank, percent, share_words, string_type, to_text
    use unit_labels, only: unit_label
    implicit none
    private
@@ -193,10 +193,8 @@ contains
             if (outcome%reason == '') then
                words = words//node_words(outcome)//': '//to_text(outcome%found)// &
                   uncertainty_words(outcome)
-               if (allocated(outcome%uncertainty)) then
-                  if (outcome%uncertainty < 10.0_dp*abs(outcome%found)) words = words//' ('// &
-                     percent(outcome%uncertainty/abs(outcome%found))//')'
-               end if
+               if (allocated(outcome%uncertainty)) words = trim(words//' '//share_words( &
+                  outcome%uncertainty, outcome%found))
                call append(lines, words//unit_words(check, model%units))
             else
                call append(lines, words//': '//outcome%reason)

@@ -38,8 +38,8 @@ module increment_quantities
       description='heat that bodies store: in and friction less out and dilatation'), &
       quantity_type('heat_dilatation', of_history, 'power', needs_dilatation, label='dilatation', &
       is_estimated=.true., &
-      description='heat that strains take up, the term with T0 beta of (1.2), or that '// &
-      'inelastic work makes, negative'), &
+      description='heat that strains take up, the term with T0 beta of (1.2), or '// &
+      'minus that of inelastic work'), &
       quantity_type('heat_friction', of_history, 'power', needs_friction_heat, &
       label='heat of friction', is_estimated=.true., &
       description='heat that friction makes'), &

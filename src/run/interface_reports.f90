@@ -7,7 +7,7 @@ module interface_reports
    use contact_points, only: contact_points_type
    use deck_report, only: deck_report_type
    use deck_source, only: place_type
-   use contact_definitions, only: contact_definition_type, is_removed
+   use contact_definitions, only: contact_definition_type, is_removed, steps_with
    use element_kinds, only: axisymmetric, plane_stress
    use errors, only: error_type
    use interface_warnings, only: clearance_warning, curved_gap_warning, distance_warning, &
@@ -134,12 +134,14 @@ contains
       call warn(offset_warning(model%mesh, points))
       if (model%contacts(i)%has_clearance) then
          call warn(clearance_warning(model%mesh, points))
-      else if (.not. is_removed(model%steps(:min(1, size(model%steps)))%changes, i)) then
-         call warn(overlap_warning(model%mesh, points))
+      else
+         if (size(model%steps) == 0 .or. any(steps_with(model%steps%changes, i))) call warn( &
+            overlap_warning(model%mesh, points))
          ! Where heat crosses the initial gaps before any mechanics.
          begins_with_heat = .false.
          if (size(model%steps) > 0) begins_with_heat = solves_heat(model%steps(1)%analysis) .and. &
-            .not. solves_mechanics(model%steps(1)%analysis)
+            .not. (solves_mechanics(model%steps(1)%analysis) .or. &
+            is_removed(model%steps(:1)%changes, i))
          if (begins_with_heat) then
             associate (law => model%interactions(model%contacts(i)%interaction)%law)
                call warn(unresolved_warning(model%mesh, points, law_at(law, largest_jump(law))))

@@ -12,6 +12,7 @@ module balances
    use heat_equation, only: heat_across, heat_rates_type
    use increment_data, only: increment_data_type
    use kinds, only: dp
+   use materials, only: heats_by_work
    use loads, only: loads_type
    use mesh, only: extent_of
    use model, only: model_type
@@ -76,8 +77,9 @@ contains
       if (data%equation%duration > 0.0_dp) then
          rates%stored = next%stored
          record%heat_stored = sum(next%stored)
-         if (model%steps(record%step)%dilates .or. any(model%materials%law%heat_fraction > &
-            0.0_dp)) record%heat_dilatation = next%dilatation
+         if (model%steps(record%step)%dilates .or. any(heats_by_work(model%materials))) then
+            record%heat_dilatation = next%dilatation
+         end if
          record%heat_stored = record%heat_stored - next%dilatation
       end if
       if (allocated(data%friction%heat)) then

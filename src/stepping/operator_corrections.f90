@@ -28,7 +28,7 @@ module operator_corrections
    use heat_equation, only: heat_equation_type
    use increment_data, only: stage_type
    use kinds, only: dp
-   use materials, only: has_law, varies
+   use materials, only: has_law, heats_by_work, varies
    use mesh, only: nodes_per_element
    use mesh_bodies, only: body_name
    use model, only: model_type
@@ -57,7 +57,7 @@ module operator_corrections
    real(dp), parameter :: astray = 1.0e-4_dp    !! least that operators leave over which lead astray
    real(dp), parameter :: safe_part = 0.5_dp    !! of the elasticity in tangents behind such ones
    real(dp), parameter :: least_rank = 1.0e-8_dp   !! tolerance of the mixing
-   real(dp), parameter :: most_ahead = 10.0_dp   !! increments that corrections are foreseen
+   real(dp), parameter :: most_ahead = 10.0_dp   !! times as long may one be that goes on as before
    integer, parameter :: most_slow = 6, most_with_operators = 25   !! passes
 
    !> Fields at points, and the elements of the bodies whose materials vary.
@@ -153,8 +153,7 @@ contains
       call self%melting%prepare(model)
       self%corrects = any(follows) .or. any(model%steps%dilates) .or. self%melting%acts
       self%has_laws = any(has_law(model%materials))
-      self%heats = any(model%materials%law%heat_fraction > 0.0_dp) .and. &
-         any(model%steps%is_transient)
+      self%heats = any(heats_by_work(model%materials)) .and. any(model%steps%is_transient)
       if (.not. any(follows)) return
       allocate (self%points, self%contents)
       self%points%has_inverses = .false.

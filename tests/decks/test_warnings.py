@@ -373,7 +373,7 @@ def test_an_amplitude_that_begins_far_from_the_initial_temperature(tmp_path, ini
     if told:
         assert one(found, "A.TOP") == (
             "the temperature jumps from 20 to 0 as step 1 begins: factors of an amplitude multiply the value, and WARM begins "
-            "with 0; 4E-2 is the factor of 20")
+            "with 0; 4E-2 is the factor for 20")
     else:
         assert found == []
 
@@ -449,6 +449,10 @@ def test_a_pair_that_is_removed_neither_closes_nor_is_pressed_apart(tmp_path, ga
     assert found == ([f"contact pair F never closes: its smallest gap is {told!r}"] if told else [])
     deck = tmp_path / "deck.inp"
     assert "the faces overlap" not in run("check", deck).stderr
+    # One that a later step adds is.
+    text = deck.read_text().rpartition("*END STEP")[0]
+    deck.write_text("\n".join([text.rstrip(), *([] if second else ADDED), "*END STEP\n"]))
+    assert ("pressed apart as soon as the pair acts" in run("check", deck).stderr) == (gap < 0.0)
 
 
 def test_the_smallest_gap_is_one_of_an_increment(tmp_path):

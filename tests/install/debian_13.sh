@@ -65,6 +65,7 @@ make_base() {
    # Without optimisation, which takes the compiler half of the time.
    local flags=("$base/thercon/"{cmake/DefaultFlags.cmake,CMakeLists.txt})
    sed --in-place 's/-Og -ffrontend-optimize -g1/-O0/; s/>:-O[13]>/>:-O0>/' "${flags[@]}"
+   # The base, and what is frequent, a kernel, or seldom.
    [[ $(cat "${flags[@]}" | grep -c -e '"-O0 ' -e '>:-O0>') == 4 ]]
 }
 

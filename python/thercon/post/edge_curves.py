@@ -71,4 +71,3 @@ def zeros_of(contact, row, piece):
     after = np.searchsorted(s, edges, side="right")
     begins = (status[after - 2] == OPEN) & (np.diff(edges, prepend=s[0]) > 0.0)
     return edges, after - ((s[after - 1] == edges) & begins)
-

@@ -65,7 +65,7 @@ contains
                call deck%warning(requests(findloc(requests%card, given%card, dim=1))%place, &
                   'the temperature jumps from '//to_text(initial)//' to 0 as step '//to_text(s)// &
                   ' begins: factors of an amplitude multiply the value, and '//curve%name// &
-                  ' begins with 0; '//to_text(initial/given%value)//' is the factor of '// &
+                  ' begins with 0; '//to_text(initial/given%value)//' is the factor for '// &
                   to_text(initial))
                return
             end associate

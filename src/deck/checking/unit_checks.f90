@@ -14,43 +14,41 @@ module unit_checks
    !> Stefan-Boltzmann constant, CODATA 2018 [W/(m^2 K^4)].
    real(dp), parameter :: stefan_boltzmann = 5.670374419e-8_dp
 
-   !> A unit by its labels, which blanks separate.
+   !> A unit by its labels, which blanks separate; in capitals, but for those of power.
    type :: unit_type
+      character(11) :: kind
       character(25) :: labels
       real(dp) :: size                !! [K], [m], [W], [Pa], [s]
       real(dp) :: zero = 0.0_dp       !! absolute zero of a scale of temperature
    end type unit_type
 
-   type(unit_type), parameter :: temperatures(4) = [ &
-      unit_type('C CELSIUS', 1.0_dp, -273.15_dp), unit_type('K KELVIN', 1.0_dp), &
-      unit_type('F FAHRENHEIT', 5.0_dp/9, -459.67_dp), unit_type('R RANKINE', 5.0_dp/9)]
+   !> Known units; of forces, which UNITS= does not have, only labels.
+   type(unit_type), parameter :: known(31) = [ &
+      unit_type('length', 'M', 1.0_dp), unit_type('length', 'DM', 1.0e-1_dp), &
+      unit_type('length', 'CM', 1.0e-2_dp), unit_type('length', 'MM', 1.0e-3_dp), &
+      unit_type('length', 'UM', 1.0e-6_dp), unit_type('length', 'FT', 0.3048_dp), &
+      unit_type('length', 'IN INCH', 0.0254_dp), &
+      unit_type('stress', 'PA N/M2 N/M^2', 1.0_dp), unit_type('stress', 'KPA', 1.0e3_dp), &
+      unit_type('stress', 'MPA N/MM2 N/MM^2', 1.0e6_dp), unit_type('stress', 'GPA', 1.0e9_dp), &
+      unit_type('stress', 'BAR', 1.0e5_dp), unit_type('stress', 'PSI', 6894.757_dp), &
+      unit_type('stress', 'KSI', 6.894757e6_dp), &
+      unit_type('power', 'W w J/s', 1.0_dp), &
+      unit_type('power', 'mW mJ/s Nmm/s N*mm/s', 1.0e-3_dp), &   ! m is milli and M mega
+      unit_type('power', 'kW KW kJ/s', 1.0e3_dp), unit_type('power', 'MW MJ/s', 1.0e6_dp), &
+      unit_type('power', 'erg/s', 1.0e-7_dp), unit_type('power', 'BTU/s Btu/s', 1055.05585_dp), &
+      unit_type('power', 'BTU/h Btu/h BTU/hr Btu/hr', 0.29307107_dp), &
+      unit_type('temperature', 'C CELSIUS', 1.0_dp, -273.15_dp), &
+      unit_type('temperature', 'K KELVIN', 1.0_dp), &
+      unit_type('temperature', 'F FAHRENHEIT', 5.0_dp/9, -459.67_dp), &
+      unit_type('temperature', 'R RANKINE', 5.0_dp/9), &
+      unit_type('time', 'S SEC', 1.0_dp), unit_type('time', 'MS', 1.0e-3_dp), &
+      unit_type('time', 'MIN', 60.0_dp), unit_type('time', 'H HR', 3600.0_dp), &
+      unit_type('time', 'D DAY', 86400.0_dp), &
+      unit_type('force', 'N KN MN KGF LBF', 1.0_dp)]
 
-   type(unit_type), parameter :: lengths(7) = [ &
-      unit_type('M', 1.0_dp), unit_type('DM', 1.0e-1_dp), unit_type('CM', 1.0e-2_dp), &
-      unit_type('MM', 1.0e-3_dp), unit_type('UM', 1.0e-6_dp), unit_type('FT', 0.3048_dp), &
-      unit_type('IN INCH', 0.0254_dp)]
-
-   !> Labels of power are as written: m is milli and M mega.
-   type(unit_type), parameter :: powers(7) = [ &
-      unit_type('W w J/s', 1.0_dp), unit_type('mW mJ/s Nmm/s N*mm/s', 1.0e-3_dp), &
-      unit_type('kW KW kJ/s', 1.0e3_dp), unit_type('MW MJ/s', 1.0e6_dp), &
-      unit_type('erg/s', 1.0e-7_dp), unit_type('BTU/s Btu/s', 1055.05585_dp), &
-      unit_type('BTU/h Btu/h BTU/hr Btu/hr', 0.29307107_dp)]
-
-   type(unit_type), parameter :: stresses(7) = [ &
-      unit_type('PA N/M2 N/M^2', 1.0_dp), unit_type('KPA', 1.0e3_dp), &
-      unit_type('MPA N/MM2 N/MM^2', 1.0e6_dp), unit_type('GPA', 1.0e9_dp), &
-      unit_type('BAR', 1.0e5_dp), unit_type('PSI', 6894.757_dp), unit_type('KSI', 6.894757e6_dp)]
-
-   type(unit_type), parameter :: times(5) = [ &
-      unit_type('S SEC', 1.0_dp), unit_type('MS', 1.0e-3_dp), unit_type('MIN', 60.0_dp), &
-      unit_type('H HR', 3600.0_dp), unit_type('D DAY', 86400.0_dp)]
-
-   type(unit_type), parameter :: forces(1) = unit_type('N KN MN LBF', 1.0_dp)   !! none of UNITS=
-
-   !> Kinds in the order of UNITS=, and one that is mistaken for stress.
-   character(*), parameter :: kinds(6) = [character(11) :: 'length', 'stress', 'power', &
-      'temperature', 'time', 'force']
+   !> Kinds in the order of UNITS=.
+   character(*), parameter :: kinds(5) = [character(11) :: 'length', 'stress', 'power', &
+      'temperature', 'time']
 
    ! Least and largest of solids: gels, and a thousand times diamond, because stiff bodies stand for
    ! rigid ones; aerogels and pure copper at 20 K.
@@ -70,7 +68,7 @@ contains
    subroutine check_units(deck)
       type(deck_type), intent(inout) :: deck
       type(unit_type) :: degree, metre, pascal, second, watt
-      real(dp) :: constant, heat, work   ! [J] of the units of heat and work, 0 where not known
+      real(dp) :: heat, work   ! [J] of the units of heat and work, 0 where not known
       integer :: interaction, k, m
 
       associate (units => deck%model%units)
@@ -92,16 +90,8 @@ contains
          case ('PHYSICAL CONSTANTS')
             if (deck%has_errors()) cycle   ! it may have one, or temperatures
             call check_zero(degree, deck)
-            if (min(degree%size, metre%size, watt%size) <= 0.0_dp .or. .not. deck%card%has( &
-               'STEFAN BOLTZMANN')) cycle
-            constant = stefan_boltzmann*metre%size**2*degree%size**4/watt%size
-            associate (given => deck%model%constants%stefan_boltzmann, units => deck%model%units)
-               if (abs(given - constant) <= other_digits*constant) cycle
-               call deck%warning(deck%card%place_of('STEFAN BOLTZMANN'), 'the constant of '// &
-                  'Stefan and Boltzmann is '//to_text(given)//', but '//to_text(constant)// &
-                  ' in the units of *OPTIONS, UNITS=, '//units%power//'/('//units%length//'^2 '// &
-                  units%temperature//'^4); give that, or correct UNITS=')
-            end associate
+            if (min(degree%size, metre%size, watt%size) > 0.0_dp) call check_boltzmann( &
+               stefan_boltzmann*metre%size**2*degree%size**4/watt%size, deck)
          case ('MATERIAL')
             m = m + 1
          case ('SURFACE INTERACTION')
@@ -131,17 +121,32 @@ contains
       k = findloc(deck%model%steps%dilates, .true., dim=1)
       if (k == 0 .or. min(work, heat) <= 0.0_dp) return
       if (abs(work - heat) > other_digits*heat) call deck%warning(deck%analysis_place(k), &
-         'DILATATION takes the work of strains for heat, but '//rate_of_work(deck%model%units, &
+         'DILATATION counts the work of strains as heat, but '//rate_of_work(deck%model%units, &
          work/heat)//' in the units of *OPTIONS, UNITS=; give power in stress length^3/time, '// &
          'or correct UNITS=')
    end subroutine check_units
+
+   !> Warns of a constant of radiation that is another one.
+   subroutine check_boltzmann(constant, deck)
+      real(dp), intent(in) :: constant                    ! in the units of the deck
+      type(deck_type), intent(inout) :: deck
+
+      if (.not. deck%card%has('STEFAN BOLTZMANN')) return
+      associate (given => deck%model%constants%stefan_boltzmann, units => deck%model%units)
+         if (abs(given - constant) > other_digits*constant) call deck%warning( &
+            deck%card%place_of('STEFAN BOLTZMANN'), 'the constant of Stefan and Boltzmann is '// &
+            to_text(given)//', but '//to_text(constant)//' in the units of *OPTIONS, UNITS=, '// &
+            units%power//'/('//units%length//'^2 '//units%temperature//'^4); give that, or '// &
+            'correct UNITS=')
+      end associate
+   end subroutine check_boltzmann
 
    !> Warns of the first label of UNITS= that is no known unit of its place but one of another.
    subroutine check_labels(deck)
       type(deck_type), intent(inout) :: deck
       type(string_type) :: labels(5)
       type(unit_type) :: unit
-      integer :: kind, place
+      integer :: place
 
       labels(1)%value = deck%model%units%length
       labels(2)%value = deck%model%units%stress
@@ -150,15 +155,12 @@ contains
       labels(5)%value = deck%model%units%time
       do place = 1, size(labels)
          unit = unit_of(labels(place)%value, kinds(place))
-         if (unit%size > 0.0_dp) cycle
-         do kind = 1, size(kinds)
-            unit = unit_of(labels(place)%value, kinds(kind))
-            if (unit%size <= 0.0_dp) cycle
-            call deck%warning(deck%card%place_of('UNITS'), labels(place)%value//' is a '// &
-               trim(kinds(kind))//', but stands where the '//trim(kinds(place))//' is: UNITS= '// &
-               'has length, stress, power, temperature, time')
-            return
-         end do
+         if (unit%size <= 0.0_dp) unit = unit_of(labels(place)%value)
+         if (unit%size <= 0.0_dp .or. unit%kind == kinds(place)) cycle
+         call deck%warning(deck%card%place_of('UNITS'), labels(place)%value//' is a '// &
+            trim(unit%kind)//', but stands where the '//trim(kinds(place))//' is: UNITS= '// &
+            'has length, stress, power, temperature, time')
+         return
       end do
    end subroutine check_labels
 
@@ -189,8 +191,9 @@ contains
       if (min(part, work, heat) <= 0.0_dp) return
       if (part*heat <= (1 + other_digits)*work .and. part*heat >= other_digits*work) return
       call deck%warning(deck%card%place, 'the heat per work is '//to_text(part)//', but '// &
-         to_text(work/heat)//' makes heat of all work in the units of *OPTIONS, UNITS=, where '// &
-         rate_of_work(deck%model%units, work/heat)//'; give a part of that, or correct UNITS=')
+         to_text(work/heat)//' turns all work into heat in the units of *OPTIONS, UNITS=, '// &
+         'where '//rate_of_work(deck%model%units, work/heat)//'; give a part of that, or '// &
+         'correct UNITS=')
    end subroutine check_part
 
    !> Warns of a heat of melting that is far from those of solids beside the specific heat.
@@ -235,8 +238,8 @@ contains
          call deck%warning(deck%card%place, 'density times specific heat of '//material%name// &
             ' is '//to_text(merge(ends(1), ends(2), ends(1) > capacities(2)))//' J/(m^3 K) in '// &
             'the units of *OPTIONS, UNITS=, beyond the '//to_text(capacities(1))//' to '// &
-            to_text(capacities(2))//' J/(m^3 K) of solids; give both in units that go with '// &
-            'those, or correct UNITS=')
+            to_text(capacities(2))//' J/(m^3 K) of solids; give both in those units, '// &
+            'or correct UNITS=')
       end associate
    end subroutine check_capacity
 
@@ -294,36 +297,26 @@ contains
       call deck%warning(deck%card%place_of('ABSOLUTE ZERO'), message)
    end subroutine check_zero
 
-   !> Finds a unit of a kind; its size is 0 where the label is not known.
+   !> Finds a unit of a kind, or of any; its size is 0 where the label is not known.
    pure type(unit_type) function unit_of(label, kind)
-      character(*), intent(in) :: label, kind
-
-      select case (kind)
-      case ('length')
-         unit_of = unit_among(to_upper(label), lengths)
-      case ('stress')
-         unit_of = unit_among(to_upper(label), stresses)
-      case ('power')
-         unit_of = unit_among(label, powers)
-      case ('temperature')
-         unit_of = unit_among(scale_label(label), temperatures)
-      case ('time')
-         unit_of = unit_among(to_upper(label), times)
-      case default
-         unit_of = unit_among(to_upper(label), forces)
-      end select
-   end function unit_of
-
-   pure type(unit_type) function unit_among(label, units)
       character(*), intent(in) :: label
-      type(unit_type), intent(in) :: units(:)
+      character(*), intent(in), optional :: kind
+      character(:), allocatable :: sought
       integer :: i
 
-      unit_among = unit_type('', 0.0_dp)
-      do i = 1, size(units)
-         if (index(' '//trim(units(i)%labels)//' ', ' '//label//' ') > 0) unit_among = units(i)
+      unit_of = unit_type('', '', 0.0_dp)
+      do i = 1, size(known)
+         if (present(kind)) then
+            if (known(i)%kind /= kind) cycle
+         end if
+         sought = to_upper(label)
+         if (known(i)%kind == 'power') sought = label
+         if (known(i)%kind == 'temperature') sought = scale_label(label)
+         if (index(' '//trim(known(i)%labels)//' ', ' '//sought//' ') == 0) cycle
+         unit_of = known(i)
+         return
       end do
-   end function unit_among
+   end function unit_of
 
    !> A label of a scale of temperature without the sign or the word for a degree.
    pure function scale_label(label) result(name)
